@@ -18,7 +18,7 @@ from navette.runtime.input_check import SharedInputChecks
 from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
-from navette.runtime.log_sinks import ConsoleSink, FileSink
+from navette.runtime.log_sinks import ConsoleSink, FileSink, new_log_file
 from navette.runtime.loop import EventLoop
 from navette.runtime.network import (
     IN_PROCESS,
@@ -262,8 +262,11 @@ class Context:
             self.log.set_level(name or "", level)
         if arguments.enable_stdout:
             self.log.sinks.append(ConsoleSink(least=console_level))
-        if arguments.log_file is not None:
-            self._file_sink = FileSink(arguments.log_file)
+        log_file = arguments.log_file
+        if arguments.log_file_name is not None:
+            log_file = new_log_file(arguments.log_file_name)
+        if log_file is not None:
+            self._file_sink = FileSink(log_file)
             self.log.sinks.append(self._file_sink)
         package = logging.getLogger("navette")
         package.addHandler(self._handler)

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from navette.errors import (
     InvalidNameError,
+    InvalidValueError,
     NavetteError,
     ParameterError,
     UnknownNameError,
@@ -37,6 +38,14 @@ class InvalidHandle(NavetteError):
 
 class RCLError(NavetteError, RuntimeError):
     """An operation that ROS 2's client library rejects, as an invalid transition."""
+
+
+class RosArgumentsError(InvalidValueError, RCLError):
+    """A ROS argument of the command line has the wrong form."""
+
+
+class UnknownROSArgsError(RosArgumentsError):
+    """A ROS argument of the command line is unknown."""
 
 
 class ServiceFailedError(NavetteError, RuntimeError):

@@ -1,6 +1,8 @@
 """Sinks of log records: console and file. Each node publishes ``/rosout`` itself."""
 
+import os
 import sys
+import time
 from pathlib import Path
 from typing import TextIO
 
@@ -77,3 +79,19 @@ class FileSink:
 
     def close(self) -> None:
         self._file.close()
+
+
+def get_logging_directory() -> Path:
+    """Return ROS 2's log directory: ROS_LOG_DIR, ROS_HOME/log or ~/.ros/log."""
+    directory = os.environ.get("ROS_LOG_DIR")
+    if directory:
+        return Path(directory).expanduser()
+    home = os.environ.get("ROS_HOME") or "~/.ros"
+    return Path(home).expanduser() / "log"
+
+
+def new_log_file(name: str) -> Path:
+    """Return the path of a new log file, named as ROS 2 does."""
+    # The name only, and of any clock: nodes may run in simulated time.
+    stamp_ms = time.time_ns() // 1_000_000  # noqa: TID251
+    return get_logging_directory() / f"{name}_{os.getpid()}_{stamp_ms}.log"

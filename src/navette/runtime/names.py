@@ -23,6 +23,7 @@ _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_/~{}]")
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 _MAX_NODE_NAME = 255
+_REMAPPING = re.compile(r"(?:([^:/]+):(?!//))?(?:ros(topic|service)://)?([^:]+)")
 
 
 def validate_node_name(node_name: str) -> bool:
@@ -147,23 +148,28 @@ class RemapRule:
     match: str
     replacement: str
     node: str | None = None
+    #: "topic", "service", or None for both.
+    of: str | None = None
 
     @classmethod
     def parse(cls, text: str) -> "RemapRule":
-        """Parse ``[node:]from:=to``.
+        """Parse ``[node:][rostopic://|rosservice://]from:=to``.
 
         Raises:
             InvalidValueError: the text has another form.
         """
         left, separator, right = text.partition(":=")
-        if not separator or not left or not right:
-            raise InvalidValueError(f"remapping {text!r} must be [node:]from:=to")
-        for scheme in ("rostopic://", "rosservice://"):
-            left, right = left.removeprefix(scheme), right.removeprefix(scheme)
-        node, colon, match = left.rpartition(":")
-        if colon:
+        found = _REMAPPING.fullmatch(left)
+        if not separator or found is None or not right:
+            raise InvalidValueError(
+                f"remapping {text!r} must be [node:]from:=to, with from optionally "
+                "after rostopic:// or rosservice://"
+            )
+        node, of, match = found.groups()
+        right = right.removeprefix(f"ros{of}://")
+        if node is not None:
             validate_node_name(node)
-        rule = cls(match, right, node if colon else None)
+        rule = cls(match, right, node, of)
         rule._validate()
         return rule
 
@@ -194,8 +200,12 @@ class NodeRemapper:
     ) -> str:
         expanded = self._expand(name, is_service=is_service)
         if not only_expand:
+            skipped = "topic" if is_service else "service"
             for rule in self._rules:
-                if self._expand(rule.match, is_service=is_service) == expanded:
+                if (
+                    rule.of != skipped
+                    and self._expand(rule.match, is_service=is_service) == expanded
+                ):
                     return self._expand(rule.replacement, is_service=is_service)
         return expanded
 

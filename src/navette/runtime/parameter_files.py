@@ -1,5 +1,6 @@
 """Reader and writer of ROS 2 parameter files, with limits on size and depth."""
 
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,21 +20,38 @@ NodeParameters = list[tuple[str, dict[str, Any]]]
 class RosLoader(BoundedLoader):
     """YAML loader with ROS 2's scalars: ``1e5`` is a double, dates are strings.
 
-    Keys are always text, so that a parameter may be named ``y``.
+    Keys are always text, so that a parameter may be named ``y``. A key that occurs
+    again adds to its first mapping: of a file's two blocks for a node, both count.
     """
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        for key, _ in node.value:
+        first: dict[str, int] = {}
+        pairs: list[tuple[Any, Any]] = []
+        for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):
                 key.tag = "tag:yaml.org,2002:str"
+                at = first.setdefault(key.value, len(pairs))
+                if at < len(pairs) and _are_mappings(value, pairs[at][1]):
+                    whole = pairs[at][1].value + value.value
+                    pairs[at] = key, yaml.MappingNode(value.tag, whole)
+                    continue
+            pairs.append((key, value))
+        node.value = pairs
         return super().construct_mapping(node, deep)
+
+
+_NODE_PATTERN = re.compile(r"[\w/*]*", re.ASCII)
+
+
+def _are_mappings(*nodes: yaml.Node) -> bool:
+    return all(isinstance(node, yaml.MappingNode) for node in nodes)
 
 
 RosLoader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _starts in (
     ("bool", r"(?:y|Y|yes|Yes|YES|n|N|no|No|NO|[tT]rue|TRUE|[fF]alse|FALSE"
      r"|on|On|ON|off|Off|OFF)\Z", "yYnNtTfFoO"),
-    ("int", r"[-+]?(?:0x[0-9a-fA-F]+|0o[0-7]+|[0-9]+)\Z", "-+0123456789"),
+    ("int", r"[-+]?(?:0[xX][0-9a-fA-F]+|[0-9]+)\Z", "-+0123456789"),
     ("float", r"(?:[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?"
      r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z", "-+0123456789."),
     ("null", r"(?:~|null|Null|NULL|)\Z", ["~", "n", "N", ""]),
@@ -45,20 +63,38 @@ RosLoader.add_constructor(
     "tag:yaml.org,2002:bool",
     lambda loader, node: str(node.value).lower() in ("y", "yes", "true", "on"),
 )
+
+
+def _construct_int(loader: RosLoader, node: yaml.ScalarNode) -> int | float | str:
+    text = str(node.value)
+    return text if node.style else _integer(text)  # text if quoted, as in rcl
+
+
+RosLoader.add_constructor("tag:yaml.org,2002:int", _construct_int)
 RosLoader.add_constructor(
-    "tag:yaml.org,2002:int", lambda loader, node: _integer(str(node.value))
+    "tag:yaml.org,2002:float", lambda loader, node: _double(str(node.value))
 )
-RosLoader.add_constructor(
-    "tag:yaml.org,2002:float",
-    lambda loader, node: float(str(node.value).lower().replace(".inf", "inf")
-                               .replace(".nan", "nan")),
-)  # fmt: skip
 
 
-def _integer(text: str) -> int:
+def _integer(text: str) -> int | float:
+    """Return a number by the rules of C's strtol, which rcl uses: 010 is octal.
+
+    What does not fit into 64 bits, or is not octal, is a double.
+    """
     digits = text.lstrip("+-").lower()
-    base = 16 if digits.startswith("0x") else 8 if digits.startswith("0o") else 10
-    return int(text, base)
+    try:
+        base = 16 if digits.startswith("0x") else 8 if digits.startswith("0") else 10
+        number = int(text, base)
+    except ValueError:
+        return float(text)
+    return number if -(2**63) <= number < 2**63 else float(number)
+
+
+def _double(text: str) -> float | str:
+    """Return a double; the text if its range is exceeded, as rcl does."""
+    named = text.lower().replace(".inf", "inf").replace(".nan", "nan")
+    number = float(named)
+    return text if math.isinf(number) and "inf" not in named else number
 
 
 def parse_value(text: str) -> Any:
@@ -101,6 +137,8 @@ def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParame
     except yaml.YAMLError as error:
         reason = f"not YAML: {problem_of(error)}"
         raise FileFormatError(origin, reason, line_of(error)) from error
+    if document is None:  # an empty file, or comments only
+        return []
     if not isinstance(document, dict):
         raise FileFormatError(origin, "expected 'node_name: ros__parameters: …'")
     reader = _Reader(str(origin))
@@ -124,6 +162,11 @@ class _Reader:
                 self.found.append((prefix or "/", values))
                 continue
             pattern = f"{prefix}/{str(key).strip('/')}"
+            if not _NODE_PATTERN.fullmatch(pattern):
+                raise FileFormatError(
+                    self._origin,
+                    f"node name {str(key)!r}: expected letters, digits, _, / and *",
+                )
             if not isinstance(value, dict):
                 raise FileFormatError(
                     self._origin,

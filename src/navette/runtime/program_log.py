@@ -4,9 +4,6 @@ A message belongs to the context that is the default one when it is logged. Befo
 context is initialised, messages go to the console.
 """
 
-import os
-from pathlib import Path
-
 from navette.runtime.context import get_default_context
 from navette.runtime.log import Logger, LogHub
 from navette.runtime.log_levels import LoggingSeverity, severity_from_string
@@ -70,15 +67,6 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
     """Return the severity of a name such as ``info``."""
     return severity_from_string(log_severity)
-
-
-def get_logging_directory() -> Path:
-    """Return ROS 2's log directory: ROS_LOG_DIR, ROS_HOME/log or ~/.ros/log."""
-    directory = os.environ.get("ROS_LOG_DIR")
-    if directory:
-        return Path(directory).expanduser()
-    home = os.environ.get("ROS_HOME") or "~/.ros"
-    return Path(home).expanduser() / "log"
 
 
 def initialize() -> None:

@@ -93,6 +93,21 @@ def test_the_first_matching_rule_applies() -> None:
     assert NodeRemapper(rules, "n", "/").resolve("a") == "/b"
 
 
+@pytest.mark.parametrize(
+    ("rule", "topic", "service"),
+    [
+        ("rostopic://a:=b", "/b", "/a"),
+        ("rosservice://a:=b", "/a", "/b"),
+        ("n:rosservice://a:=rosservice://b", "/a", "/b"),
+        ("a:=b", "/b", "/b"),
+    ],
+)
+def test_rules_of_topics_or_services(rule: str, topic: str, service: str) -> None:
+    remapper = NodeRemapper([RemapRule.parse(rule)], "n", "/")
+    assert remapper.resolve("a") == topic
+    assert remapper.resolve("a", is_service=True) == service
+
+
 def test_only_expand_skips_remapping() -> None:
     remapper = NodeRemapper([RemapRule.parse("a:=b")], "n", "/")
     assert remapper.resolve("a", only_expand=True) == "/a"

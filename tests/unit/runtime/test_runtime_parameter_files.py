@@ -8,6 +8,7 @@ import pytest
 from navette.errors import FileFormatError, InvalidValueError, ParameterError
 from navette.runtime import Context, Node, VirtualClock
 from navette.runtime.arguments import parse_ros_arguments, remove_ros_args
+from navette.runtime.exceptions import RCLError, UnknownROSArgsError
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.overrides import ParameterOverrides
 from navette.runtime.parameter_files import (
@@ -55,7 +56,12 @@ def test_nodes_and_nested_names() -> None:
     [
         ("1", 1),
         ("-0x10", -16),
-        ("0o17", 15),
+        ("010", 8),
+        ("08", 8.0),
+        ("0o17", "0o17"),
+        ("99999999999999999999", 1e20),
+        ("1e400", "1e400"),
+        ('!!int "5"', "5"),
         ("1.0", 1.0),
         ("1e5", 1e5),
         ("1.5e-3", 1.5e-3),
@@ -247,11 +253,67 @@ def test_arguments() -> None:
 
 @pytest.mark.parametrize(
     "args",
-    [["--what"], ["-p"], ["-p", "x"], ["--log-level", "loud"], ["-r", "x"], ["stray"]],
+    [
+        ["--what"],
+        ["-p"],
+        ["-p", "x"],
+        ["--log-level", "loud"],
+        ["-r", "x"],
+        ["stray"],
+        ["-p", "a:="],
+        ["-p", "a b:=1"],
+        ["-e", "/a b"],
+        ["--log-file-name", "a/b"],
+    ],
 )
 def test_invalid_arguments(args: list[str]) -> None:
-    with pytest.raises(InvalidValueError):
+    with pytest.raises(InvalidValueError) as caught:
         parse_ros_arguments(["--ros-args", *args])
+    assert isinstance(caught.value, RCLError)
+    unknown = args[0] in ("--what", "stray")
+    assert isinstance(caught.value, UnknownROSArgsError) == unknown
+
+
+def test_blocks_of_the_same_node_all_count() -> None:
+    text = """\
+n:
+  ros__parameters:
+    a: 1
+    deep: {x: 1}
+/**: {ros__parameters: {c: 3}}
+n:
+  ros__parameters:
+    b: 2
+    a: 4
+    deep: {y: 2}
+"""
+    assert parse_parameters(text) == [
+        ("/n", {"a": 4, "deep.x": 1, "deep.y": 2, "b": 2}),
+        ("/**", {"c": 3}),
+    ]
+
+
+def test_an_empty_file_has_no_parameters() -> None:
+    assert parse_parameters("# nothing yet\n") == []
+
+
+def test_a_node_name_with_spaces_is_refused() -> None:
+    with pytest.raises(FileFormatError, match="node name 'a b'"):
+        parse_parameters("a b: {ros__parameters: {p: 8}}")
+
+
+def test_a_log_file_is_named_as_ros_2_does(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    context = Context()
+    context.init(["--ros-args", "--log-file-name", "mine", "--disable-stdout-logs"])
+    Node("n", context=context).get_logger().info("noted")
+    context.shutdown()
+    (path,) = tmp_path.iterdir()
+    assert path.name.startswith("mine_")
+    assert path.suffix == ".log"
+    assert "noted" in path.read_text()
 
 
 def test_remove_ros_args() -> None:

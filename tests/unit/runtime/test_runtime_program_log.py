@@ -9,6 +9,7 @@ import navette
 from navette.errors import InvalidValueError
 from navette.runtime import LoggingSeverity, VirtualClock, program_log
 from navette.runtime.context import get_default_context, reset_default_context
+from navette.runtime.log_sinks import get_logging_directory
 
 
 @pytest.fixture(autouse=True)
@@ -75,9 +76,9 @@ def test_the_directory_follows_the_environment(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
-    assert program_log.get_logging_directory() == tmp_path
+    assert get_logging_directory() == tmp_path
     monkeypatch.delenv("ROS_LOG_DIR")
     monkeypatch.setenv("ROS_HOME", str(tmp_path))
-    assert program_log.get_logging_directory() == tmp_path / "log"
+    assert get_logging_directory() == tmp_path / "log"
     monkeypatch.delenv("ROS_HOME")
-    assert program_log.get_logging_directory() == Path.home() / ".ros" / "log"
+    assert get_logging_directory() == Path.home() / ".ros" / "log"

@@ -295,7 +295,7 @@ class Navigator:
         replans = self.report.replans + int(new) if self.report.plan else 0
         self._plan, self._progress = plan, PathProgress(plan.poses)
         # Where a path passes its start again, the robot is matched farther along it
-        # at once: that is no progress.
+        # at once, which does not count as progress.
         self._progress.update(here)
         self._checker.new_path(self._progress.covered)
         self._publish(plan.poses)

@@ -47,7 +47,8 @@ _ORIGINS = {
         InvalidParameterTypeException, InvalidParameterValueException,
         InvalidServiceNameException, InvalidTopicNameException, NameValidationException,
         NodeNameNonExistentError, ParameterException, ParameterImmutableException,
-        ParameterUninitializedException, RCLError, ShutdownException, TimeoutException
+        ParameterUninitializedException, RCLError, ShutdownException, TimeoutException,
+        UnknownROSArgsError
     """,
     "navette.runtime.executor": "await_or_execute, EventsExecutor, TimeoutObject",
     "navette.runtime.guard_condition": "GuardCondition",
@@ -72,10 +73,10 @@ _ORIGINS = {
     """,
     "navette.runtime.parameter_service": "ParameterService",
     "navette.runtime.poll_set": "PollSet as WaitSet",
+    "navette.runtime.log_sinks": "get_logging_directory",
     "navette.runtime.program_log": """
         clear_config, get_logger, get_logger_effective_level, get_logger_level,
-        get_logging_directory, get_logging_severity_from_string, initialize,
-        set_logger_level
+        get_logging_severity_from_string, initialize, set_logger_level
     """,
     "navette.runtime.qos": """
         DeadlineBestAvailable, InvalidQoSProfileException,
@@ -141,7 +142,7 @@ _MODULES = {
         remove_ros_args, shutdown, SignalHandlerOptions, SingleThreadedExecutor, spin,
         spin_once, spin_until_future_complete, try_shutdown, uninstall_signal_handlers
     """,
-    "rclpy._rclpy_pybind11": "InvalidHandle, RCLError, WaitSet",
+    "rclpy._rclpy_pybind11": "InvalidHandle, RCLError, UnknownROSArgsError, WaitSet",
     "rclpy.action": """
         ActionClient, ActionServer, CancelResponse,
         get_action_client_names_and_types_by_node, get_action_names_and_types,

@@ -256,7 +256,7 @@ def test_without_progress_the_planner_replans_and_ends_stuck() -> None:
     assert not len(drive.published[-1])
 
 
-def test_a_path_that_is_matched_near_its_end_at_once_is_no_progress() -> None:
+def test_a_match_near_the_end_of_a_new_path_does_not_count_as_progress() -> None:
     """A robot beside its goal, 0.28 rad off its heading, that does not turn."""
     drive = Drive(progress_timeout_s=2.0, max_stuck_replans=2)
     drive.pose, drive.moving = Pose2(7.96, 3.96, 0.28), False
