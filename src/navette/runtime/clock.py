@@ -61,6 +61,8 @@ class ContextClock(ABC):
 
     #: Whether time advances by events only, not by waiting.
     is_virtual: bool = False
+    #: Whether virtual time follows the wall clock.
+    is_paced: bool = False
     #: Whether other processes share the clock, so that a run without events waits for
     #: theirs instead of ending.
     is_shared: bool = False
@@ -114,6 +116,8 @@ class PacedClock(VirtualClock):
         factor: seconds of virtual time per second of wall time, > 0.
         start_ns: initial virtual time.
     """
+
+    is_paced = True
 
     def __init__(self, factor: float = 1.0, start_ns: int = 0) -> None:
         super().__init__(start_ns)

@@ -219,6 +219,38 @@ class EventLoop:
             if stop is not None and stop():
                 return
 
+    def run_calls(self, done: Callable[[], bool]) -> None:
+        """Run calls of other threads and the events that result, until ``done`` holds.
+
+        For a callback that waits while virtual time stands still. Events that are ready
+        already wait, so that a run without such calls stays deterministic. The group of
+        the callback is not held. ``done`` is checked before every event and after
+        :meth:`wake`.
+        """
+        assert self.in_driver_thread, "called from a callback"
+        outer, others = self._running, list(self.ready)
+        self.ready.clear()
+        try:
+            while True:
+                self._attention = False
+                if self._closed or done():
+                    return
+                self._run_inbox()
+                self._run_ready(done, None)
+                if self.ready or self._inbox or self._attention or done():
+                    continue
+                self.waiting = True
+                # Checked again now that other threads see ``waiting``.
+                if not (self._inbox or self._attention or self._closed):
+                    self._wakeup.wait(None)
+                self.waiting = False
+                self._wakeup.clear()
+        finally:
+            self.waiting = False
+            self.ready.extendleft(reversed(others))
+            self._running = outer
+            self._attention = True  # the wake-up may concern the outer run
+
     def take(self, until_ns: int | None, stop: Callable[[], bool]) -> Entity | None:
         """Return the next event that may run now, without running it.
 
@@ -367,6 +399,9 @@ class EventLoop:
                     _, token, entity = heapq.heappop(heap)
                     if entity.token == token:
                         self.ready.append(entity)
+        self._run_inbox()
+
+    def _run_inbox(self) -> None:
         while self._inbox:
             # Not counted as an event: spin_once must still run one of the program's.
             self.ready.appendleft(self._inbox.popleft())

@@ -15,7 +15,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, ParamSpec, TypeVar, overload
@@ -57,12 +57,15 @@ def kernel(
             other kernels.
         signature: the only types that it takes; compiled or loaded at once.
         options: of ``numba.njit``.
+
+    Kernels release the GIL: other threads run meanwhile.
     """
     if function is None:
         return functools.partial(kernel, signature=signature, **options)
+    options = {"nogil": True, **options}
     compiled: Any = numba.njit(**options)(function)
     if compiled is not function:  # it is with NUMBA_DISABLE_JIT
-        compiled._cache = KernelCache(function)
+        compiled._cache = KernelCache(function, options)
         if signature is not None:
             compiled.compile(signature)
             compiled.disable_compile()
@@ -75,8 +78,11 @@ class KernelCache(NullCache):
     A file that is absent, damaged or not private to the user counts as not cached.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(
+        self, function: Callable[..., Any], options: Mapping[str, Any]
+    ) -> None:
         self._function: Any = function
+        self._options = repr(sorted(options.items()))
 
     @property
     def cache_path(self) -> str | None:
@@ -117,6 +123,7 @@ class KernelCache(NullCache):
         parts = [
             numba.__version__,
             str(sys.implementation.cache_tag),
+            self._options,
             *map(str, codegen.magic_tuple()),
             *(part for each in arguments for part in _describe_type(each)),
             *_describe_function(self._function),

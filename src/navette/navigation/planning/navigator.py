@@ -6,6 +6,7 @@ It is replaced by another path only if that is cheaper by a margin, so that the 
 does not oscillate between paths of equal cost.
 """
 
+import copy
 import math
 from dataclasses import replace
 from typing import Any
@@ -72,6 +73,15 @@ class Navigator:
         self._blocked_ns = -_BLOCKED_PERIOD_NS  # of the last plan because of it
         self._set_out = False
         self._paused_ns: int | None = None
+
+    def copy(self) -> "Navigator":
+        """Return a navigator in the same state that changes independently."""
+        other = copy.copy(self)
+        other.planner = self.planner.copy()
+        other._avoided = copy.deepcopy(self._avoided)
+        other._progress = copy.copy(self._progress)
+        other._checker = copy.copy(self._checker)
+        return other
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map (H, W); the next step checks the path against it."""

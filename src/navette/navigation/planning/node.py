@@ -4,9 +4,14 @@ Before its first goal the node publishes no path and the status ``waiting_for_go
 goal that arrives before map or odometry waits for them; the status names what is
 missing. On stale odometry and on any failure the node publishes an empty path, so that
 the robot stops.
+
+Plans run in a worker: with the system clock the node's callbacks continue meanwhile. A
+cancellation, a new goal or a takeover drops the plan that is computed; maps wait until
+it is complete.
 """
 
 import math
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,6 +45,7 @@ from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.worker import Worker
 
 # Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
@@ -119,9 +125,13 @@ class PlannerNode(StageNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("planner", **kwargs)
+        self._worker = Worker(self)
         self._tracker = self._new_tracker()
         self._navigator = Navigator(self.params)
         self._navigator.planner.warm_up()
+        self._stepping: Navigator | None = None  # copy that the worker steps
+        self._step_is_due = False
+        self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
@@ -135,6 +145,7 @@ class PlannerNode(StageNode):
             robot=self._fresh_pose,
             frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
             publish_plan=self._publish_plan,
+            worker=self._worker,
         )
         self._lifecycle = StageLifecycle(self, "planner_server", self._end_goal)
         smoothing = StageLifecycle(self, "smoother_server")
@@ -152,10 +163,11 @@ class PlannerNode(StageNode):
         if msg.message == Outcome.METHOD_FAILED and self._navigator.has_path:
             if path_age_ns < _STATUS_DELAY_NS:
                 return  # the status may be that of the previous path
+            self._drop_step()
             self._navigator.fail(Outcome.METHOD_FAILED)
             self._publish_news()
         elif msg.message == _BLOCKED and self._navigator.has_path:
-            self._navigator.note_blocked()
+            self._when_stepped(lambda: self._navigator.note_blocked())
             self.on_timer()
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -171,7 +183,7 @@ class PlannerNode(StageNode):
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
         self._map = occupancy, spec
-        self._navigator.set_map(occupancy, spec)
+        self._when_stepped(lambda: self._navigator.set_map(occupancy, spec))
         self.on_timer()
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -180,7 +192,9 @@ class PlannerNode(StageNode):
             return
         self._odometry_ns = self._now_ns
         robot = self._robot()
-        if robot is not None and self._navigator.note(robot, self._now_ns):
+        if robot is None or self._stepping is not None:
+            return
+        if self._navigator.note(robot, self._now_ns):
             self._publish_news()
 
     def on_goal_point(self, msg: PointStamped) -> None:
@@ -212,6 +226,7 @@ class PlannerNode(StageNode):
             goal = Goal(msg.pose.position.x, msg.pose.position.y)
         else:
             return
+        self._drop_step()
         outside = error.reason == "out_of_range"
         self._navigator.refuse_goal(
             goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
@@ -229,6 +244,7 @@ class PlannerNode(StageNode):
 
     def _end_goal(self) -> bool:
         """Cancel the goal and stop the robot; return whether there was one."""
+        self._drop_step()
         canceled = self._navigator.cancel()
         self._publish_news()
         return canceled
@@ -236,13 +252,13 @@ class PlannerNode(StageNode):
     def on_cancel_goal(self, msg: Empty) -> None:
         """End the goal, if no missions do that."""
         if not self._missions_send_goals():
-            self._navigator.cancel()
-            self._publish_news()
+            self._end_goal()
 
     def on_avoid_place(
         self, request: Trigger_Request, response: Trigger_Response
     ) -> Trigger_Response:
         """Plan around the place where the robot got stuck."""
+        self._drop_step()
         response.success = self._navigator.avoid_place()
         found = "the place ahead is avoided" if response.success else "no such place"
         response.message = found
@@ -251,17 +267,50 @@ class PlannerNode(StageNode):
     def on_commander(self, msg: DiagnosticStatus) -> None:
         """Pause while navigation is masked."""
         commander = Commander.of(msg)
-        if commander.masks(self.resolve_topic_name(topics.CMD_VEL_NAV.name)):
+        masked = commander.masks(self.resolve_topic_name(topics.CMD_VEL_NAV.name))
+        if masked and not self._navigator.is_paused:
+            self._drop_step()
             self._navigator.pause(self._now_ns)
-        elif self._navigator.is_paused:
+        elif self._navigator.is_paused and not masked:
+            self._drop_step()
             self._navigator.resume(self._now_ns)
             self.on_timer()
         self._publish_news()
 
     def on_timer(self) -> None:
         """Step the navigator."""
-        self._navigator.step(self._robot(), self._now_ns, stale=self._is_stale())
+        if self._stepping is not None:
+            self._step_is_due = True
+            return
+        self._stepping = stepping = self._navigator.copy()
+        robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
+        self._worker.run(
+            lambda: stepping.step(robot, now_ns, stale=stale),
+            lambda _: self._finish_step(stepping),
+            is_dropped=lambda: self._stepping is not stepping,
+        )
+
+    def _finish_step(self, stepped: Navigator) -> None:
+        self._navigator = stepped
+        self._drop_step()
         self._publish_news()
+        if self._step_is_due:
+            self._step_is_due = False
+            self.on_timer()
+
+    def _drop_step(self) -> None:
+        """Leave the step that the worker computes, for a change that cannot wait."""
+        self._stepping = None
+        waiting, self._after_step = self._after_step, []
+        for change in waiting:
+            change()
+
+    def _when_stepped(self, change: Callable[[], None]) -> None:
+        """Change the navigator, after the step that the worker computes."""
+        if self._stepping is None:
+            change()
+        else:
+            self._after_step.append(change)
 
     def on_watch(self) -> None:
         """Stop the robot as soon as its odometry is stale."""
@@ -276,6 +325,7 @@ class PlannerNode(StageNode):
         if params.plan_period_s != old.plan_period_s:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(params.plan_period_s, self.on_timer)
+        self._drop_step()
         self._navigator.configure(params)
 
     def on_time_jump(self) -> None:
@@ -283,6 +333,7 @@ class PlannerNode(StageNode):
 
         The map is kept until another arrives: it may be published only once.
         """
+        self._drop_step()
         had_path = self._navigator.has_path
         self._tracker.reset()
         self._odometry_ns = None
@@ -296,6 +347,11 @@ class PlannerNode(StageNode):
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, empty)
         self._report()
+
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        self._worker.close()
+        super().destroy_node()
 
     @property
     def _now_ns(self) -> int:
@@ -326,6 +382,7 @@ class PlannerNode(StageNode):
 
     def _set_goal(self, header: Header, goal: Goal) -> None:
         map_T_frame = self._frame_on_map(header.frame_id)
+        self._drop_step()
         if map_T_frame is None:
             self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
             self.get_logger().error(

@@ -1,5 +1,6 @@
 """Plan a path that the footprint can drive, from map, pose and goal."""
 
+import copy
 import math
 from dataclasses import dataclass, field, replace
 
@@ -71,6 +72,12 @@ class Planner:
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
+
+    def copy(self) -> "Planner":
+        """Return a planner with the same map that changes independently."""
+        other = copy.copy(self)
+        other._grids = self._grids.copy()
+        return other
 
     def with_params(self, params: PlannerParams) -> "Planner":
         """Return a planner with other parameters on the same map."""

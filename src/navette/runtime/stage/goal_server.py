@@ -31,6 +31,7 @@ class GoalServer:
         name: the action's name.
         on_goal: called with the request of each accepted goal.
         accepts: whether goals are accepted now; default: always.
+        on_cancel: called after the client has requested that the goal is cancelled.
     """
 
     def __init__(
@@ -41,7 +42,10 @@ class GoalServer:
         on_goal: Callable[[Any], None],
         *,
         accepts: Callable[[], bool] = lambda: True,
+        on_cancel: Callable[[], None] = lambda: None,
     ) -> None:
+        self._on_cancel = on_cancel
+        self._call_soon = node.context.loop.call_soon
         self._action = action
         self._on_goal = on_goal
         self._goal: ServerGoalHandle | None = None
@@ -54,8 +58,13 @@ class GoalServer:
                 GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT
             ),
             handle_accepted_callback=self._accept,
-            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+            cancel_callback=self._accept_cancel,
         )
+
+    @property
+    def goal(self) -> ServerGoalHandle | None:
+        """The active goal."""
+        return self._goal
 
     @property
     def is_active(self) -> bool:
@@ -108,6 +117,10 @@ class GoalServer:
             goal.update_state(GoalEvent.EXECUTE)
         self._goal = goal
         self._on_goal(goal.request)
+
+    def _accept_cancel(self, goal: ServerGoalHandle) -> CancelResponse:
+        self._call_soon(self._on_cancel, "cancel")
+        return CancelResponse.ACCEPT
 
 
 def serve_query(

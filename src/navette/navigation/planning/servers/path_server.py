@@ -1,12 +1,12 @@
 """Nav2's planner server: compute_path_to_pose, …_through_poses, is_path_valid.
 
 The requests are answered from the newest map. They have no effect on the goal that is
-being driven.
+being driven. A request that is cancelled ends at once, also while its path is computed.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,15 +18,20 @@ from navette.msgs.nav_msgs.msg import Path
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.path_queries import blocked_poses, plan_through
+from navette.navigation.planning.path_queries import (
+    PlannedRoute,
+    blocked_poses,
+    plan_through,
+)
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
 from navette.runtime import Stopwatch
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import serve_query
+from navette.runtime.stage.goal_server import GoalServer
 from navette.runtime.stage.path_messages import moved, path_message, pose_of, poses_of
 from navette.runtime.time import Duration
+from navette.runtime.worker import Worker
 
 DEFAULT_PLANNER = "GridBased"
 """Name of the configured planner, as in Nav2's default parameters."""
@@ -53,6 +58,7 @@ class PlanningContext:
         robot: pose of the robot; None if unknown or stale.
         frame_on_map: pose of a frame in the map frame; None if unknown.
         publish_plan: publishes a planned path (N, 3), map.
+        worker: computes paths.
     """
 
     params: Callable[[], PlannerParams]
@@ -60,6 +66,7 @@ class PlanningContext:
     robot: Callable[[], Pose2 | None]
     frame_on_map: Callable[[str], Pose2 | None]
     publish_plan: Callable[[Poses], None]
+    worker: Worker
 
     def path(self, msg: Path) -> Poses | None:
         """Return the poses (N, 3) of a path in the map frame.
@@ -81,6 +88,14 @@ class _RequestError(Exception):
         self.code = code
 
 
+class _PathRequest(NamedTuple):
+    """Arguments of plan_through."""
+
+    planner: Planner
+    start: Pose2
+    goals: list[Goal]
+
+
 class PathServer:
     """The actions that compute paths, and the service that checks one."""
 
@@ -89,56 +104,80 @@ class PathServer:
     ) -> None:
         self._context = context
         self._node = node
-        serve_query(
-            node,
+        self._serve(
             ComputePathToPose,
             "compute_path_to_pose",
-            lambda goal: self._answer(ComputePathToPose.Result, goal, [goal.goal]),
-            accepts=accepts,
+            lambda goal: [goal.goal],
+            accepts,
         )
-        serve_query(
-            node,
+        self._serve(
             ComputePathThroughPoses,
             "compute_path_through_poses",
-            lambda goal: self._answer(ComputePathThroughPoses.Result, goal, goal.goals),
-            accepts=accepts,
+            lambda goal: list(goal.goals),
+            accepts,
         )
         node.create_service(IsPathValid, "is_path_valid", self._check_path)
 
-    def _answer(self, result_type: Any, goal: Any, goals: list[PoseStamped]) -> Any:
-        """Return the result of a compute_path action, whose goals are ``goals``."""
+    def _serve(
+        self,
+        action: Any,
+        name: str,
+        goals_of: Callable[[Any], list[PoseStamped]],
+        accepts: Callable[[], bool],
+    ) -> None:
+        server = GoalServer(
+            self._node,
+            action,
+            name,
+            lambda goal: self._compute(server, action.Result(), goal, goals_of(goal)),
+            accepts=accepts,
+            on_cancel=lambda: server.end(action.Result()),
+        )
+
+    def _compute(
+        self, server: GoalServer, result: Any, goal: Any, goals: list[PoseStamped]
+    ) -> None:
+        """Fill in the result in the worker, unless the goal ends before."""
         timer = Stopwatch()
-        result = result_type()
+        active = server.goal
+
+        def finish(route: PlannedRoute) -> None:
+            try:
+                poses = _checked(route, request)
+            except _RequestError as error:
+                server.end(self._refused(result, error))
+                return
+            map_frame = self._context.params().map_frame
+            now_ns = self._node.get_clock().now().nanoseconds
+            result.path = path_message(poses, map_frame, now_ns)
+            result.planning_time = Duration(seconds=timer.elapsed_s).to_msg()
+            self._context.publish_plan(poses)
+            server.end(result)
+
         try:
-            poses = self._plan(goal, goals)
+            request = self._request(goal, goals)
         except _RequestError as error:
-            self._node.get_logger().warning(f"path request: {error.code}: {error}")
-            result.error_code = getattr(result_type, error.code)
-            result.error_msg = str(error)
-            return result
-        map_frame = self._context.params().map_frame
-        now_ns = self._node.get_clock().now().nanoseconds
-        result.path = path_message(poses, map_frame, now_ns)
-        result.planning_time = Duration(seconds=timer.elapsed_s).to_msg()
-        self._context.publish_plan(poses)
+            server.end(self._refused(result, error))
+            return
+        self._context.worker.run(
+            lambda: plan_through(*request),
+            finish,
+            is_dropped=lambda: server.goal is not active,
+        )
+
+    def _refused(self, result: Any, error: _RequestError) -> Any:
+        self._node.get_logger().warning(f"path request: {error.code}: {error}")
+        result.error_code = getattr(result, error.code)
+        result.error_msg = str(error)
         return result
 
-    def _plan(self, goal: Any, goals: list[PoseStamped]) -> Poses:
+    def _request(self, goal: Any, goals: list[PoseStamped]) -> _PathRequest:
         planner = self._planner(goal.planner_id)
         if not goals:
             raise _RequestError("NO_VIAPOINTS_GIVEN", "no goals given")
         start = self._on_map(goal.start, "start") if goal.use_start else self._robot()
         targets = [Goal(*self._on_map(each, "goal")) for each in goals]
-        route = plan_through(planner, start, targets)
-        if route.outcome.has_path:
-            return route.poses
-        target = targets[route.leg]
-        which = f"goal {route.leg + 1} of {len(goals)}" if len(goals) > 1 else "goal"
-        raise _RequestError(
-            _ERRORS[route.outcome],
-            f"{route.outcome} (start ({start.x:.6g}, {start.y:.6g}), {which} "
-            f"({target.x:.6g}, {target.y:.6g})) {route.fault}".rstrip(),
-        )
+        return _PathRequest(planner.copy(), start, targets)
 
     def _planner(self, planner_id: str) -> Planner:
         params = self._context.params()
@@ -185,3 +224,21 @@ class PathServer:
         response.is_valid = len(blocked) == 0
         response.invalid_pose_indices = blocked.tolist()
         return response
+
+
+def _checked(route: PlannedRoute, request: _PathRequest) -> Poses:
+    """Return the poses of a route.
+
+    Raises:
+        _RequestError: it has none.
+    """
+    if route.outcome.has_path:
+        return route.poses
+    start, goals = request.start, request.goals
+    goal = goals[route.leg]
+    which = f"goal {route.leg + 1} of {len(goals)}" if len(goals) > 1 else "goal"
+    raise _RequestError(
+        _ERRORS[route.outcome],
+        f"{route.outcome} (start ({start.x:.6g}, {start.y:.6g}), {which} "
+        f"({goal.x:.6g}, {goal.y:.6g})) {route.fault}".rstrip(),
+    )

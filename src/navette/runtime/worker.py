@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Long computations of a node that do not hold the event loop."""
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TypeVar
+
+from navette.runtime.node import Node
+
+T = TypeVar("T")
+
+
+class Worker:
+    """Runs computations of a node, one at a time; results arrive in the event loop.
+
+    With the system clock, a computation runs in a thread while the loop continues.
+    Under a virtual clock it runs in place, so that a run is deterministic. Under a
+    paced clock it runs in a thread and virtual time stops, but calls of other threads
+    (the live view, other processes) run: with the same calls the result is the same.
+
+    A computation must not use the node or change what callbacks use.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._loop = node.context.loop
+        self._name = node.get_fully_qualified_name()
+        self._threads: ThreadPoolExecutor | None = None
+        self._closed = False
+
+    def run(
+        self,
+        compute: Callable[[], T],
+        finish: Callable[[T], None],
+        *,
+        is_dropped: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Call ``finish`` with the result of ``compute``, unless ``is_dropped``.
+
+        The exception of a failed computation is raised in the event loop.
+        """
+        clock = self._loop.clock
+        if not self._loop.in_driver_thread or (clock.is_virtual and not clock.is_paced):
+            finish(compute())
+            return
+        if self._threads is None:
+            self._threads = ThreadPoolExecutor(1, thread_name_prefix=self._name)
+        future = self._threads.submit(compute)
+
+        def end() -> None:
+            if not self._closed and not is_dropped():
+                finish(future.result())
+
+        if clock.is_virtual:
+            future.add_done_callback(lambda _: self._loop.wake())
+            self._loop.run_calls(lambda: future.done() or is_dropped())
+            if future.done():
+                end()
+        else:
+            self._call_when_done(future, end)
+
+    def _call_when_done(self, future: "Future[T]", end: Callable[[], None]) -> None:
+        future.add_done_callback(
+            lambda _: self._loop.call_soon_threadsafe(end, "worker", self._name)
+        )
+
+    def close(self) -> None:
+        """Drop all results; wait for the computation that runs."""
+        self._closed = True
+        if self._threads is not None:
+            self._threads.shutdown(cancel_futures=True)
