@@ -1,5 +1,6 @@
 """Leaves that call an action or service server and wait for its end."""
 
+from abc import abstractmethod
 from typing import Any, ClassVar
 
 from py_trees.common import Status
@@ -42,13 +43,13 @@ class CallLeaf(LeafNode):
 
     IS_RECOVERY: ClassVar[bool] = False
 
+    @abstractmethod
     def start(self) -> ServerCall:
-        """Override: start the call.
+        """Start the call.
 
         Raises:
             MissingInputError: an input has no value.
         """
-        raise NotImplementedError
 
     def needs_restart(self) -> bool:
         """Override: whether new inputs replace the running call."""
@@ -113,13 +114,13 @@ class ActionLeaf(CallLeaf):
     SERVER: ClassVar[str]
     PORTS: ClassVar[Ports] = SERVER_PORTS
 
+    @abstractmethod
     def goal(self) -> Any:
-        """Override: return the action's goal message.
+        """Return the action's goal message.
 
         Raises:
             MissingInputError: an input has no value.
         """
-        raise NotImplementedError
 
     def new_goal(self, **fields: Any) -> Any:
         return action_interface(self.ACTION).Goal(**fields)

@@ -5,6 +5,7 @@ Navigation System", IROS 2020). Children that ended keep their status until the 
 starts again, so that people can read it; running ones are halted when the node ends.
 """
 
+from abc import abstractmethod
 from collections.abc import Generator, Iterator
 from typing import ClassVar
 
@@ -42,9 +43,9 @@ class BranchNode(TreeNode, Composite):
         """Override to reset the state that a run keeps."""
         self.index = 0
 
+    @abstractmethod
     def run(self) -> Ticks:
-        """Override: tick children and return the status of this node."""
-        raise NotImplementedError
+        """Tick children and return the status of this node."""
 
     def tick(self) -> Iterator[Behaviour]:
         if self.status is not RUNNING:

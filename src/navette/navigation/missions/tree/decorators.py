@@ -1,5 +1,6 @@
 """Decorators: BehaviorTree.CPP's, and Nav2's rates, triggers and goal updates."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
@@ -44,9 +45,9 @@ class DecoratorNode(TreeNode, Decorator):
     def begin(self) -> None:
         """Override to reset the state that a run keeps."""
 
+    @abstractmethod
     def run(self) -> Ticks:
-        """Override: tick the child and return the status of this node."""
-        raise NotImplementedError
+        """Tick the child and return the status of this node."""
 
     def update(self) -> Status:
         return self.decorated.status
@@ -201,9 +202,9 @@ class PacedNode(DecoratorNode):
     def begin(self) -> None:
         self._first = True
 
+    @abstractmethod
     def due(self) -> bool:
-        """Override: whether the child starts again."""
-        raise NotImplementedError
+        """Whether the child starts again."""
 
     def started_again(self) -> None:
         """Override to note that the child ended with success."""
