@@ -3,16 +3,15 @@
 import dataclasses
 import json
 import math
-import os
 import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from navette.cli.options import Argument, Option
+from navette.cli.bench_options import BenchOptions, TrialOptions
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -20,118 +19,39 @@ if TYPE_CHECKING:
     from navette.bench.trial import Trial, TrialResult
 
 
-def bench(
-    suite: Annotated[
-        str,
-        Argument(
-            help="BARN's 300 worlds or DynaBARN's moving obstacles (barn, dynabarn,"
-            " with --data), generated worlds (random, barn-like, forest,"
-            " dynabarn-like, …) or the course."
-        ),
-    ],
-    data: Annotated[
-        Path | None, Option("--data", help="Folder of the data set, such as BARN's.")
-    ] = None,
-    worlds: Annotated[
-        str,
-        Option(
-            "--worlds",
-            metavar="N,…",
-            help="Worlds by number, as 1,4,7-9. Default: all; of generated ones 0-9.",
-        ),
-    ] = "",
-    robot: Annotated[
-        str | None, Option("--robot", help="Robot to use instead of the suite's.")
-    ] = None,
-    controller: Annotated[
-        str | None,
-        Option("--controller", help="Method of the controller, such as mppi."),
-    ] = None,
-    planner: Annotated[
-        str | None, Option("--planner", help="Method of the planner.")
-    ] = None,
-    param: Annotated[
-        list[str] | None,
-        Option(
-            "-p",
-            "--param",
-            metavar="NODE.NAME=VALUE",
-            help="Set a parameter. Repeat for several.",
-        ),
-    ] = None,
-    seeds: Annotated[
-        str,
-        Option(
-            "--seeds",
-            metavar="N,…",
-            help="Seeds of the noise; every world is driven once per seed.",
-        ),
-    ] = "0",
-    jobs: Annotated[
-        int,
-        Option("--jobs", help="Trials at the same time. Default: one per core.", min=1),
-    ] = os.cpu_count() or 1,
-    results: Annotated[
-        Path | None,
-        Option(
-            "--results",
-            help="Keep results in this file; trials that it contains are not repeated.",
-        ),
-    ] = None,
-    compare: Annotated[
-        Path | None,
-        Option("--compare", help="Compare with the results in this file of --results."),
-    ] = None,
-    report: Annotated[
-        Path | None, Option("--report", help="Write a report as HTML.")
-    ] = None,
-    as_json: Annotated[
-        bool, Option("--json", help="Print the summary as JSON.")
-    ] = False,
-    min_success: Annotated[
-        float,
-        Option(
-            "--min-success",
-            help="Exit with 1 if a smaller share of the trials succeeds.",
-            min=0,
-            max=1,
-        ),
-    ] = 0.0,
-) -> None:
+def bench(options: BenchOptions) -> None:
     """Drive a set of worlds and measure success, contacts, time and score."""
     from navette.bench.runner import read_results, run_trials
-    from navette.bench.statistics import compare as compared
-    from navette.bench.statistics import summarize
-    from navette.bench.suites import suite_trials
+    from navette.bench.statistics import compare, summarize
 
-    trials = _trials(
-        suite_trials(
-            suite, data=data, worlds=_numbers("--worlds", worlds), robot=robot
-        ),
-        _numbers("--seeds", seeds),
-        _parameters(param or (), controller, planner),
-    )
-    found = _with_progress(run_trials(trials, jobs=jobs, results_file=results), trials)
-    summary = summarize(found)
-    against = (
-        [] if compare is None else compared(list(read_results(compare).values()), found)
-    )
-    if report is not None:
-        _write_report(report, suite, summary, found, against, trials)
-    if as_json:
+    trials = _trials(options.trials)
+    results = run_trials(trials, jobs=options.jobs, results_file=options.results)
+    found = _with_progress(results, trials)
+    summary, against = summarize(found), []
+    if options.compare is not None:
+        against = compare(list(read_results(options.compare).values()), found)
+    if options.report is not None:
+        suite = options.trials.suite
+        _write_report(options.report, suite, summary, found, against, trials)
+    if options.as_json:
         click.echo(json.dumps(_plain(summary, against)))
     else:
         _print(summary, against)
-    if summary.success < min_success:
+    if summary.success < options.min_success:
         raise click.exceptions.Exit(1)
 
 
-def _trials(
-    base: Sequence["Trial"], seeds: Sequence[int], parameters: dict[str, dict[str, Any]]
-) -> list["Trial"]:
+def _trials(options: TrialOptions) -> list["Trial"]:
+    from navette.bench.suites import suite_trials
+
+    worlds = _numbers("--worlds", options.worlds)
+    base = suite_trials(
+        options.suite, data=options.data, worlds=worlds, robot=options.robot
+    )
+    parameters = _parameters(options.param or (), options.controller, options.planner)
     return [
         dataclasses.replace(trial, seed=seed, parameters=parameters)
-        for seed in seeds or (0,)
+        for seed in _numbers("--seeds", options.seeds) or (0,)
         for trial in base
     ]
 

@@ -4,161 +4,103 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import click
 
-from navette.cli.options import Argument, Json, Option
+from navette.cli.bag.replay_options import ReplayOptions
 
 if TYPE_CHECKING:
-    from navette.bags.compare import Comparison
-    from navette.navigation.stack.replay import MakeNode
+    from navette.bags import BagReader
+    from navette.bags.compare import Comparison, Tolerances
+    from navette.navigation.stack.replay import MakeNode, Replay, ReplaySummary
     from navette.navigation.stack.scene import ResolvedScene
     from navette.runtime import Node
 
 FAILED = 1
 
-File = Annotated[Path, Argument(metavar="FILE", help="Recording of the inputs.")]
-Nodes = Annotated[
-    list[str],
-    Option(
-        "--node",
-        metavar="NAME",
-        help="A stage (costmap, map_memory, planner, control, …), MODULE:Class or"
-        " FILE.py:Class. Repeat for several.",
-    ),
-]
-Parameters = Annotated[
-    list[str] | None,
-    Option("-p", metavar="[NODE:]NAME:=VALUE", help="Set a parameter."),
-]
-ParamsFiles = Annotated[
-    list[Path] | None,
-    Option("--params-file", metavar="FILE", help="ROS 2 parameter file."),
-]
-World = Annotated[
-    str | None,
-    Option(help="World of the recording, for the parameters of its robot."),
-]
-Robot = Annotated[str | None, Option(help="Robot whose parameters the stages use.")]
-Record = Annotated[
-    Path | None,
-    Option(metavar="OUT.mcap", help="Record the output of the nodes to a new file."),
-]
-Overwrite = Annotated[
-    bool, Option("--overwrite", help="Replace an existing recording of that name.")
-]
-Golden = Annotated[
-    Path | None,
-    Option(
-        "--compare",
-        metavar="GOLDEN",
-        help="Compare the output of the nodes with this recording, which can be FILE;"
-        " exit code 1 if it differs.",
-    ),
-]
-Tolerance = Annotated[
-    list[str] | None,
-    Option(
-        metavar="[TOPIC[.FIELD]=]VALUE[:SHARE%]",
-        help="Allowed difference of numbers, and share of array elements that may"
-        " exceed it. Repeat for several; the last match wins.",
-    ),
-]
-TimeTolerance = Annotated[
-    float,
-    Option(metavar="S", help="Allowed difference of stamps.", min=0),
-]
-Inputs = Annotated[
-    list[str] | None,
-    Option(
-        "--input", metavar="TOPIC", help="Feed this topic even if a node publishes it."
-    ),
-]
-Start = Annotated[
-    float,
-    Option("-s", "--start-offset", metavar="S", help="Skip the first S seconds."),
-]
-Length = Annotated[
-    float | None,
-    Option("-u", "--duration", metavar="S", help="Replay S seconds."),
-]
 
-
-def replay(
-    file: File,
-    nodes: Nodes,
-    parameters: Parameters = None,
-    params_files: ParamsFiles = None,
-    world: World = None,
-    robot: Robot = None,
-    record: Record = None,
-    overwrite: Overwrite = False,
-    golden: Golden = None,
-    tolerance: Tolerance = None,
-    time_tolerance: TimeTolerance = 0.0,
-    inputs: Inputs = None,
-    start_offset: Start = 0.0,
-    duration: Length = None,
-    as_json: Json = False,
-) -> None:
+def replay(options: ReplayOptions) -> None:
     """Feed recorded inputs to nodes in lock-step, faster than real time.
 
     Topics that the nodes publish are not read from the recording. The replay is
     deterministic: repeated replays write identical files.
     """
     from navette.bags import open_bag
-    from navette.bags.compare import Tolerances, compare
-    from navette.bags.play import PlayOptions
+    from navette.bags.compare import Tolerances
     from navette.cli.bag.replay_report import as_document, report
     from navette.cli.output import show_json
-    from navette.navigation.stack.replay import Replay
 
-    tolerances = Tolerances.parse(tolerance or ())
+    output, golden = options.output, options.output.golden
+    tolerances = Tolerances.parse(output.tolerance or ())
     comparison: Comparison | None = None
     with ExitStack() as stack:
+        record = output.record
         if golden is not None and record is None:
             record = Path(stack.enter_context(TemporaryDirectory())) / "replay.mcap"
-            shown_record = None
-        else:
-            shown_record = record
-        _check_record(record, file, golden)
-        source = stack.enter_context(open_bag(file))
-        resolved = _robot(world, robot)
-        replayed = Replay(
-            source,
-            [_maker(name) for name in nodes],
-            record=record,
-            overwrite=overwrite,
-            overrides=resolved.override_parameters if resolved else _no_parameters,
-            arguments=_arguments(
-                parameters or [],
-                params_files or [],
-                resolved.remappings if resolved else [],
-            ),
-            also=inputs or (),
-            options=PlayOptions(start_offset_s=start_offset, duration_s=duration),
-        )
+        _check_record(record, options.inputs.file, golden)
+        source = stack.enter_context(open_bag(options.inputs.file))
+        replayed = _replay(source, options, record)
         stack.callback(replayed.close)
         summary = replayed.run()
         if golden is not None and record is not None:
-            expected = stack.enter_context(open_bag(golden))
-            got = stack.enter_context(open_bag(record))
-            comparison = compare(
-                expected,
-                got,
-                topics=summary.outputs,
-                tolerances=tolerances,
-                time_tolerance_ns=round(time_tolerance * 1e9),
-                start_ns=replayed.begin_ns,
-                # The source may lack later messages with the last stamp.
-                end_ns=replayed.end_ns - golden.samefile(file),
-            )
-    if as_json:
-        show_json(as_document(summary, comparison, shown_record))
+            comparison = _compare(replayed, summary, options, record, tolerances)
+    if options.as_json:
+        show_json(as_document(summary, comparison, output.record))
     else:
-        report(summary, comparison, shown_record)
+        report(summary, comparison, output.record)
     raise click.exceptions.Exit(0 if comparison is None or comparison.same else FAILED)
+
+
+def _replay(
+    source: "BagReader", options: ReplayOptions, record: Path | None
+) -> "Replay":
+    from navette.bags.play import PlayOptions
+    from navette.navigation.stack.replay import Replay
+
+    inputs, nodes = options.inputs, options.nodes
+    resolved = _robot(nodes.world, nodes.robot)
+    return Replay(
+        source,
+        [_maker(name) for name in nodes.nodes],
+        record=record,
+        overwrite=options.output.overwrite,
+        overrides=resolved.override_parameters if resolved else _no_parameters,
+        arguments=_arguments(
+            nodes.parameters or [],
+            nodes.params_files or [],
+            resolved.remappings if resolved else [],
+        ),
+        also=inputs.inputs or (),
+        options=PlayOptions(
+            start_offset_s=inputs.start_offset, duration_s=inputs.duration
+        ),
+    )
+
+
+def _compare(
+    replayed: "Replay",
+    summary: "ReplaySummary",
+    options: ReplayOptions,
+    record: Path,
+    tolerances: "Tolerances",
+) -> "Comparison":
+    from navette.bags import open_bag
+    from navette.bags.compare import compare
+
+    golden = options.output.golden
+    assert golden is not None, "called to compare"
+    with open_bag(golden) as expected, open_bag(record) as got:
+        return compare(
+            expected,
+            got,
+            topics=summary.outputs,
+            tolerances=tolerances,
+            time_tolerance_ns=round(options.output.time_tolerance * 1e9),
+            start_ns=replayed.begin_ns,
+            # The source may lack later messages with the last stamp.
+            end_ns=replayed.end_ns - golden.samefile(options.inputs.file),
+        )
 
 
 def _maker(name: str) -> "MakeNode":
