@@ -6,7 +6,7 @@ A robot drives to goals in real time. At random moments an operator's command is
 each with another turn rate, and the time is taken until that command arrives on
 /cmd_vel. Over Zenoh it is the way there and back. ``planning`` plans through a maze of
 1200 x 1200 cells in the same process all the time. There the second line is the robot's
-own (simulated) time, which stands still while a plan is computed.
+own (simulated) time, which is stopped while a plan is computed.
 """
 
 import json

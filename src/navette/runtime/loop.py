@@ -222,7 +222,7 @@ class EventLoop:
     def run_calls(self, done: Callable[[], bool]) -> None:
         """Run calls of other threads and the events that result, until ``done`` holds.
 
-        For a callback that waits while virtual time stands still. Events that are ready
+        For a callback that waits while virtual time is stopped. Events that are ready
         already wait, so that a run without such calls stays deterministic. The group of
         the callback is not held. ``done`` is checked before every event and after
         :meth:`wake`.
