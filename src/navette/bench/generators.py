@@ -91,15 +91,18 @@ class _Plot:
         return None if found is None else found[1] / STRAIGHT * _PLAN_CELL_M
 
     def _lethal(self, spec: GridSpec) -> NDArray[np.uint8]:
-        rows, columns = np.mgrid[: spec.height, : spec.width]
-        centres = spec.centers_of(np.stack([rows.ravel(), columns.ravel()], axis=1))
-        lethal = np.zeros(len(centres), bool)
-        for post in self.posts:
-            lethal |= np.hypot(*(centres - post).T) <= self.post_m
+        columns, rows = np.arange(spec.width), np.arange(spec.height)
+        xs = spec.centers_of(np.stack([0 * columns, columns], axis=1))[:, 0]
+        ys = spec.centers_of(np.stack([rows, 0 * rows], axis=1))[:, 1]
+        lethal = np.zeros(spec.shape, np.uint8)
+        for x, y in self.posts:
+            across, along = np.abs(xs - x) <= self.post_m, np.abs(ys - y) <= self.post_m
+            away = np.hypot(xs[across] - x, ys[along, None] - y)
+            lethal[np.ix_(along, across)] |= away <= self.post_m
         for x, y, wide, deep in self.boxes:
-            inside = np.abs(centres - (x, y)) <= (wide / 2, deep / 2)
-            lethal |= inside.all(axis=1)
-        return lethal.reshape(spec.shape).astype(np.uint8)
+            across, along = np.abs(xs - x) <= wide / 2, np.abs(ys - y) <= deep / 2
+            lethal[np.ix_(along, across)] = 1
+        return lethal
 
 
 def _automaton(rng: np.random.Generator, share: float, rounds: int) -> Filled:

@@ -148,11 +148,12 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         hit = np.isfinite(scan.ranges)
         angles = scan.angle_min + scan.angle_increment * np.flatnonzero(hit)
         ends = scan.ranges[hit, None] * np.stack([np.cos(angles), np.sin(angles)], 1)
+        map_T_scan = self._position() @ self.observer.base_T_scan
         return draw_episode(
             self._world,
             self._route.goal,
             self._track,
-            (self._position() @ self._scan_in_base()).apply(ends.astype(np.float64)),
+            map_T_scan.apply(ends.astype(np.float64)),
             self.params.tolerance_m,
         )
 
@@ -194,11 +195,6 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     def _position(self) -> Pose2:
         return self._world.simulator.pose().to_pose2()
-
-    def _scan_in_base(self) -> Pose2:
-        simulator = self._world.simulator
-        link, sensor = next(sensors_of(simulator.compiled.robot.model, LidarSensor))
-        return (simulator.link_in_base(link) @ sensor.link_T_sensor).to_pose2()
 
     def _observe(self) -> Observation:
         simulator = self._world.simulator
@@ -270,7 +266,8 @@ def _observer_of(simulator: Simulator, params: NavigationEnvParams) -> Observer:
     """
     if not simulator.lidars:
         raise InvalidValueError("the robot has no laser scanner: nothing to observe")
-    sensor, limits = simulator.lidars[0].sensor, simulator.params
+    link, sensor = next(sensors_of(simulator.compiled.robot.model, LidarSensor))
+    limits = simulator.params
     if params.beams > sensor.samples:
         raise ParameterError(
             f"parameter 'beams': {params.beams} is not allowed; the lidar has "
@@ -278,7 +275,10 @@ def _observer_of(simulator: Simulator, params: NavigationEnvParams) -> Observer:
         )
     return Observer(
         beams=params.beams or sensor.samples,
+        angle_min=sensor.angle_min,
+        angle_max=sensor.angle_max,
         range_max_m=sensor.range_max,
+        base_T_scan=(simulator.link_in_base(link) @ sensor.link_T_sensor).to_pose2(),
         forward_mps=limits.max_speed_mps,
         reverse_mps=limits.max_reverse_speed_mps,
         turn_radps=limits.max_yaw_rate_radps,

@@ -5,7 +5,6 @@ A trained policy gets its observations from the same functions when it drives a 
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from gymnasium import spaces
@@ -27,12 +26,17 @@ class Observer:
 
     Attributes:
         beams: ranges in the observation.
+        angle_min, angle_max: of the lidar's first and last beam, rad.
         range_max_m: range of a beam that hits nothing.
+        base_T_scan: pose of the lidar.
         forward_mps, reverse_mps, turn_radps: largest commands.
     """
 
     beams: int
+    angle_min: float
+    angle_max: float
     range_max_m: float
+    base_T_scan: Pose2
     forward_mps: float
     reverse_mps: float
     turn_radps: float
@@ -57,7 +61,7 @@ class Observer:
 
     def observe(
         self,
-        ranges: NDArray[Any],
+        ranges: NDArray[np.floating],
         map_T_base: Pose2,
         goal_map: tuple[float, float],
         velocity: tuple[float, float],
@@ -65,7 +69,8 @@ class Observer:
         """Return the observation.
 
         Args:
-            ranges: (N,) m of one scan; inf, −inf and NaN as in REP 117.
+            ranges: (N,) m of one scan; inf, −inf and NaN as in REP 117. Without a scan:
+                :meth:`ranges_to`.
             map_T_base: the robot's pose.
             goal_map: (x, y), m.
             velocity: forward speed (m/s) and turn rate (rad/s).
@@ -81,7 +86,23 @@ class Observer:
             "velocity": np.clip(velocity, least, limit).astype(np.float32),
         }
 
-    def reduce(self, ranges: NDArray[Any]) -> NDArray[np.float32]:
+    def ranges_to(
+        self, points_map: NDArray[np.float64], map_T_base: Pose2
+    ) -> NDArray[np.float64]:
+        """Return ranges (beams,) m to obstacle points (N, 2), such as occupied cells.
+
+        The nearest point of each sector counts; inf without one.
+        """
+        points = (map_T_base @ self.base_T_scan).inverse().apply(points_map)
+        angle = np.arctan2(points[:, 1], points[:, 0]) - self.angle_min
+        width = (self.angle_max - self.angle_min) / self.beams
+        sector = np.floor(np.mod(angle, math.tau) / width).astype(int)
+        seen = sector < self.beams
+        ranges = np.full(self.beams, np.inf)
+        np.minimum.at(ranges, sector[seen], np.hypot(*points[seen].T))
+        return ranges
+
+    def reduce(self, ranges: NDArray[np.floating]) -> NDArray[np.float32]:
         """Return the smallest range of each of ``beams`` equal sectors, m.
 
         A beam that hits nothing, or is lost, counts as the largest range; one that is
@@ -102,7 +123,7 @@ class Observer:
         )
         return limited
 
-    def command(self, action: NDArray[Any]) -> tuple[float, float]:
+    def command(self, action: NDArray[np.floating]) -> tuple[float, float]:
         """Return speed (m/s) and turn rate (rad/s) of an action in [−1, 1]².
 
         Raises:

@@ -11,6 +11,7 @@ from gymnasium.utils.env_checker import check_env
 
 import navette.gym
 from navette.errors import InvalidValueError, ParameterError, UnknownNameError
+from navette.geometry import Pose2
 from navette.gym import NavigationEnv
 from navette.sim import World, load_robot
 
@@ -106,6 +107,21 @@ def test_ranges_are_those_of_the_lidar() -> None:
     sensor_x_m = -0.032
     assert ranges[0] == pytest.approx(1.9 - sensor_x_m, abs=0.05)
     assert ranges[1] == ranges[2] == np.float32(env.observer.range_max_m)
+
+
+@pytest.mark.parametrize("robot", ["jackal", "turtlebot3_burger"])
+def test_ranges_to_obstacle_points_are_about_those_of_the_lidar(robot: str) -> None:
+    env = make("forest:5", robot=robot, beams=24)
+    observation, info = env.reset(seed=0)
+    space = env._world.space
+    cells = np.argwhere((space.occupied > 0) & (space.room_m < space.spec.resolution))
+    points = space.spec.centers_of(cells)
+    ranges = env.observer.ranges_to(points, Pose2(*info["pose"]))
+    from_points = env.observer.observe(ranges, Pose2(*info["pose"]), (0, 0), (0, 0))
+    near = observation["ranges"] < 5.0
+    assert near.sum() >= 3
+    gap = np.abs(from_points["ranges"] - observation["ranges"])[near]
+    assert np.median(gap) < 0.1
 
 
 def test_full_action_is_the_largest_speed() -> None:
