@@ -31,6 +31,23 @@ class MethodOptions:
         ),
     ] = None
 
+    costmap: Annotated[
+        str | None,
+        Option(
+            metavar=_PLACE,
+            help="Costmap: scan, or your own.",
+            panel=PANEL,
+        ),
+    ] = None
+    mapping: Annotated[
+        str | None,
+        Option(
+            metavar=_PLACE,
+            help="Mapping: overwrite, max, log_odds, or your own.",
+            panel=PANEL,
+        ),
+    ] = None
+
     @property
     def chosen(self) -> dict[str, str]:
         """What is chosen → its name."""

@@ -13,10 +13,12 @@ from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import PlanarScan, ScanCostmap
+from navette.navigation.costmap.scan_costmap import PlanarScan
 from navette.navigation.grids import grid_to_message
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
+from navette.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 
@@ -50,8 +52,9 @@ class CostmapNode(StageNode):
 
     def __init__(self, node_name: str = "costmap", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._costmap = ScanCostmap(self.params)
+        self._costmap = make_costmap(self.params)
         self._costmap.warm_up()
+        self._fault = ""  # newest of the user's method
         self._newest: OccupancyGrid | None = None
         source = CostmapSource(
             grid=lambda: self._newest,
@@ -71,7 +74,11 @@ class CostmapNode(StageNode):
             msg.range_min,
             msg.range_max,
         )
-        cells = self._costmap.build(scan)
+        try:
+            cells = self._costmap.build(scan)
+        except MethodFaultError as error:
+            self._report_fault(str(error))
+            return
         stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id
         message = grid_to_message(cells, self._costmap.spec, frame_id, stamp_ns)
@@ -80,6 +87,12 @@ class CostmapNode(StageNode):
         if self.has_listeners(topics.LOCAL_COSTMAP.name):
             self.publish(topics.LOCAL_COSTMAP.name, message)
 
+    def _report_fault(self, fault: str) -> None:
+        """Log a fault of the user's method once; without a costmap the robot stops."""
+        if fault != self._fault:
+            self._fault = fault
+            self.get_logger().error(f"{fault}\nNo costmap: the robot stops.")
+
     def on_params_changed(self, old: CostmapParams) -> None:
         """Use the new values from the next scan on."""
-        self._costmap = ScanCostmap(self.params)
+        self._costmap = make_costmap(self.params)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from navette.errors import ParameterError
+from navette.navigation.costmap.methods import COSTMAPS
 from navette.params import Params, param
 
 
@@ -10,6 +11,11 @@ from navette.params import Params, param
 class CostmapParams(Params):
     """Geometry and inflation of the costmap."""
 
+    method: str = param(
+        "scan",
+        "traces the beams, marks and inflates the hits; or a method of your own",
+        choices=COSTMAPS,
+    )
     resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
     size_m: float = param(
         30.0,

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.costmap.grazing import grazing_margins
+from navette.navigation.costmap.methods import COSTMAPS
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.grids import (
     UNKNOWN,
@@ -48,20 +49,25 @@ class PlanarScan:
             )
 
 
-class ScanCostmap:
-    """Build costmaps: trace the beams, mark the hits, inflate.
+def sensor_grid(params: CostmapParams) -> GridSpec:
+    """Return the square grid about the sensor, in the sensor's frame.
 
-    The grid is a square about the sensor, in the sensor's frame, with an odd number of
-    cells: the sensor is at the centre of the middle cell.
+    Its number of cells is odd: the sensor is at the centre of the middle cell.
     """
+    cells = 2 * math.ceil(params.size_m / params.resolution_m / 2 - 0.5 - 1e-9) + 1
+    corner = -cells * params.resolution_m / 2
+    return GridSpec(params.resolution_m, cells, cells, Pose2(corner, corner, 0.0))
+
+
+@COSTMAPS.register("scan")
+class ScanCostmap:
+    """Build costmaps: trace the beams, mark the hits, inflate."""
+
+    Params = CostmapParams
 
     def __init__(self, params: CostmapParams) -> None:
         self.params = params
-        cells = 2 * math.ceil(params.size_m / params.resolution_m / 2 - 0.5 - 1e-9) + 1
-        corner = -cells * params.resolution_m / 2
-        self.spec = GridSpec(
-            params.resolution_m, cells, cells, Pose2(corner, corner, 0.0)
-        )
+        self.spec = sensor_grid(params)
         self._table = cost_table(
             "linear" if params.inflation_method == "linear" else "exponential",
             inflation_radius_m=params.inflation_radius_m,

@@ -34,6 +34,7 @@ from navette.navigation.grids.obstacles import (
     ObstacleTracker,
     obstacle_points,
 )
+from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 
@@ -68,6 +69,7 @@ __all__ = [
     "accumulate",
     "placed",
     "cells_in_footprint",
+    "checked_cells",
     "Changes",
     "compare",
     "CollisionCheck",

@@ -20,6 +20,8 @@ from navette.navigation.grids import (
     merge,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
+from navette.navigation.mapping.methods import MAPPINGS
+from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
 
 
@@ -70,12 +72,17 @@ class PlacedCostmap:
     motion: BodyMotion = STEADY
 
 
+@MAPPINGS.register("log_odds")
+@MAPPINGS.register("max")
+@MAPPINGS.register("overwrite")
 class MapMemory:
     """Fuse placed costmaps into a map that grows as needed.
 
     ``overwrite`` and ``max`` store occupancy; ``log_odds`` stores evidence (NaN =
     unknown) and computes the occupancy from it.
     """
+
+    Params = MapMemoryParams
 
     def __init__(self, params: MapMemoryParams) -> None:
         self._loaded: tuple[NDArray[np.int8], GridSpec] | None = None
@@ -88,6 +95,7 @@ class MapMemory:
         A map that is larger than a smaller ``max_size_m`` keeps its size.
         """
         self.params = params
+        self._own = own_mapping(params)
         self.footprint = (
             Footprint.from_flat(params.footprint_m) if params.footprint_m else None
         )
@@ -127,7 +135,11 @@ class MapMemory:
         if corners is None:
             return False
         self._grow(corners)
-        if self._log_odds is not None:
+        if self._own is not None:
+            self._cells = self._own.update(
+                self._cells, self.spec, costmap.cells, costmap.spec
+            )
+        elif self._log_odds is not None:
             self._add_evidence(self._log_odds, costmap)
         else:
             merge(
@@ -162,6 +174,8 @@ class MapMemory:
 
     def warm_up(self) -> None:
         """Load or compile the kernels before the first costmap."""
+        if self._own is not None:
+            return  # the user's method is called with costmaps only
         trial = MapMemory(replace(self.params, size_m=self.params.resolution_m))
         cells = np.full((1, 1), LETHAL, np.int8)
         spec = GridSpec(self.params.resolution_m, 1, 1, trial.spec.origin)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
+from navette.navigation.mapping.methods import MAPPINGS
 from navette.params import Params, param
 
 
@@ -24,8 +25,8 @@ class MapMemoryParams(Params):
     fusion: str = param(
         "overwrite",
         "how a costmap is fused: its known cells replace the map's, the larger cost is "
-        "kept, or evidence is accumulated",
-        choices=("overwrite", "max", "log_odds"),
+        "kept, evidence is accumulated, or a method of your own",
+        choices=MAPPINGS,
     )
     erase_range_m: float = param(
         5.0,

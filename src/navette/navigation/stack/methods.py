@@ -7,6 +7,8 @@ from navette.errors import UnknownNameError
 METHOD_PARAMETERS = {
     "planner": ("planner", "method"),
     "controller": ("control", "method"),
+    "costmap": ("costmap", "method"),
+    "mapping": ("map_memory", "fusion"),
 }
 """What is chosen → node and its parameter."""
 
