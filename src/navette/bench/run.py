@@ -67,7 +67,7 @@ def _measure(
     outcome = _outcome(trial, simulation, observer)
     began_s = 0.0 if observer.began_ns is None else observer.began_ns / 1e9
     time_s = float(samples[-1, 0] - began_s) if len(samples) else 0.0
-    cruise = simulation.stack.control.params.cruise_speed_mps
+    cruise = simulation.stack.cruise_speed_mps or trial.fastest_mps
     return TrialResult(
         suite=trial.suite,
         name=trial.name,

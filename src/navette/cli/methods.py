@@ -1,9 +1,10 @@
 """Options that choose the methods of the stages; several verbs have them."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from navette.cli.options import Option
+from navette.errors import InvalidValueError
 
 PANEL = "Bring your own"
 _PLACE = "NAME|FILE.py:CLASS"
@@ -48,7 +49,73 @@ class MethodOptions:
         ),
     ] = None
 
+    replace: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NODE=FILE.py[:CLASS]",
+            help="Your own rclpy node instead of a node of the stack (planner, control,"
+            " costmap, map_memory, localizer, behaviors), in the same simulated time."
+            " Repeat for several.",
+            panel=PANEL,
+        ),
+    ] = None
+
+    param: Annotated[
+        list[str] | None,
+        Option(
+            "-p",
+            "--param",
+            metavar="NODE.NAME=VALUE",
+            help="Set a parameter of a node, of your method too. Repeat for several.",
+            panel=PANEL,
+        ),
+    ] = None
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Node → parameter → value of ``-p``.
+
+        Raises:
+            InvalidValueError: not of the form NODE.NAME=VALUE.
+        """
+        from navette.runtime.parameter_files import parse_value
+
+        found: dict[str, dict[str, Any]] = {}
+        for text in self.param or ():
+            name, equals, value = text.partition("=")
+            node, dot, parameter = name.lstrip("/").partition(".")
+            if not (equals and dot and node and parameter):
+                raise InvalidValueError(
+                    f"-p {text!r}: expected NODE.NAME=VALUE, as "
+                    "control.cruise_speed_mps=1"
+                )
+            found.setdefault(node, {})[parameter] = parse_value(value)
+        return found
+
+    @property
+    def replacements(self) -> dict[str, str]:
+        """Node → the user's class of nodes.
+
+        Raises:
+            InvalidValueError: not of the form NODE=PLACE.
+        """
+        found = {}
+        for text in self.replace or ():
+            node, equals, place = text.partition("=")
+            if not (node and equals and place):
+                raise InvalidValueError(
+                    f"--replace {text!r}: expected NODE=FILE.py or NODE=FILE.py:CLASS"
+                )
+            found[node.lstrip("/")] = place
+        return found
+
     @property
     def chosen(self) -> dict[str, str]:
         """What is chosen → its name."""
-        return {kind: name for kind, name in vars(self).items() if name is not None}
+        given = {
+            "planner": self.planner,
+            "controller": self.controller,
+            "costmap": self.costmap,
+            "mapping": self.mapping,
+        }
+        return {kind: name for kind, name in given.items() if name is not None}

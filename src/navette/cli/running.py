@@ -27,7 +27,14 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
         # Imported here: the first import compiles the kernels.
         from navette.navigation.stack.simulation import Simulation
 
-        simulation = Simulation(options, on_change=screen.on_change)
+        makers = {}
+        if options.replacements:
+            from navette.ros2.names.node_classes import node_makers
+
+            makers = node_makers(options.replacements)
+        simulation = Simulation(
+            options, on_change=screen.on_change, replacements=makers
+        )
     try:
         return _drive(simulation, screen, as_json=as_json)
     finally:

@@ -49,6 +49,8 @@ def checked_array(
     Raises:
         MethodFaultError: not numbers, of another shape, NaN or infinite.
     """
+    if value is None:
+        raise MethodFaultError(f"{name} returned None; expected {expected}")
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):

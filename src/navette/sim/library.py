@@ -2,17 +2,24 @@
 """Worlds and robots by name (built in) or by file."""
 
 from dataclasses import dataclass, field, replace
+from importlib.metadata import entry_points
 from pathlib import Path
+from typing import Any
 
 import yaml
 
-from navette.errors import FileFormatError, UnknownNameError
+from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
+from navette.plugins import load_attribute
 from navette.sim.mjcf import read_mjcf
 from navette.sim.occupancy_map import read_map
+from navette.sim.robot_file import model_of, read_robot_file
 from navette.sim.scene import Model, Scene
 from navette.sim.sdf import read_sdf
 from navette.sim.urdf import read_urdf_robot, read_urdf_world
 from navette.untrusted.yaml_input import load_yaml
+
+ROBOTS = "navette.robots"
+"""Group of the entry points of robots."""
 
 _DATA = Path(__file__).parent / "data"
 _WORLDS = _DATA / "worlds"
@@ -42,6 +49,8 @@ class Robot:
     params_file: Path | None = None
     #: Names of its topics, by the stack's names for them; ``names.yaml`` beside it.
     topic_names: dict[str, str] = field(default_factory=dict)
+    #: Node → parameter → value, before those of the file.
+    parameters: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
 def world_names() -> list[str]:
@@ -74,7 +83,10 @@ def load_world(name_or_path: str | Path) -> Scene:
 
 
 def load_robot(name_or_path: str | Path) -> Robot:
-    """Load a built-in robot by name, or the robot in an .sdf or .urdf file.
+    """Load a robot by name, or the one in an .sdf, .urdf or .yaml file.
+
+    A name is that of a built-in robot, or of an entry point ``navette.robots`` of an
+    installed package: its file, or a function that returns it.
 
     Raises:
         UnknownNameError: neither a built-in name nor a file; lists the names.
@@ -85,7 +97,13 @@ def load_robot(name_or_path: str | Path) -> Robot:
         folder = _ROBOTS / name
         model = _driven(read_sdf(folder / "model.sdf"), folder / "model.sdf")
         return Robot(name, model, folder / "params.yaml", _topic_names(folder))
-    path = _existing(name_or_path, "robot", robot_names())
+    installed = _installed_robot(name)
+    if installed is not None:
+        return replace(load_robot(installed), name=name)
+    known = [*robot_names(), *(each.name for each in entry_points(group=ROBOTS))]
+    path = _existing(name_or_path, "robot", known)
+    if path.suffix.lower() in (".yaml", ".yml"):
+        return _described_robot(path)
     beside = path.parent / "params.yaml"
     params_file = beside if beside.is_file() else None
     topic_names = _topic_names(path.parent)
@@ -95,7 +113,41 @@ def load_robot(name_or_path: str | Path) -> Robot:
     if path.suffix.lower() in (".sdf", ".world"):
         model = _driven(read_sdf(path), path)
         return Robot(model.name, model, params_file, topic_names)
-    raise FileFormatError(path, "unknown extension of a robot file; known: .sdf, .urdf")
+    raise FileFormatError(
+        path, "unknown extension of a robot file; known: .sdf, .urdf, .yaml"
+    )
+
+
+def _described_robot(path: Path) -> Robot:
+    """Return the robot of a YAML file with sizes, or with the name of a model file."""
+    file = read_robot_file(path)
+    if file.sizes is not None:
+        model = model_of(file.sizes)
+        return Robot(
+            model.name, model, None, _topic_names(path.parent), file.parameters
+        )
+    assert file.model is not None, "a robot's file has sizes or a model"
+    if not file.model.is_file():
+        raise FileFormatError(path, f"model: {file.model}: no such file")
+    return replace(load_robot(file.model), parameters=file.parameters)
+
+
+def _installed_robot(name: str) -> Path | None:
+    """Return the file of a robot of an installed package.
+
+    Raises:
+        InvalidValueError: the entry point is not a file or a function that returns one.
+    """
+    for point in entry_points(group=ROBOTS, name=name):
+        found = load_attribute(point.value)
+        found = found() if callable(found) else found
+        if not isinstance(found, str | Path):
+            raise InvalidValueError(
+                f"entry point {ROBOTS} {name!r} ({point.value}): expected the path of "
+                f"a model, or a function that returns it, not {found!r}"
+            )
+        return Path(found)
+    return None
 
 
 def _topic_names(folder: Path) -> dict[str, str]:

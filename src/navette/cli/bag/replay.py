@@ -13,7 +13,8 @@ from navette.cli.bag.replay_options import ReplayOptions
 if TYPE_CHECKING:
     from navette.bags import BagReader
     from navette.bags.compare import Comparison, Tolerances
-    from navette.navigation.stack.replay import MakeNode, Replay, ReplaySummary
+    from navette.navigation.stack.programs import MakeNode
+    from navette.navigation.stack.replay import Replay, ReplaySummary
     from navette.navigation.stack.scene import ResolvedScene
     from navette.runtime import Node
 

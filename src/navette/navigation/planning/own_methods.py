@@ -71,6 +71,10 @@ class PlannerGrid:
         """Return the (row, column) of a point (m, map)."""
         return self.spec.cell_of(x, y)
 
+    def contains(self, row: int, column: int) -> bool:
+        """Return whether a cell lies in the grid."""
+        return self.spec.contains(row, column)
+
     def centers_of(self, cells: Any) -> NDArray[np.float64]:
         """Return the points (N, 2) x, y (m, map) of cells (N, 2) row, column."""
         return self.spec.centers_of(np.asarray(cells, np.int64).reshape(-1, 2))

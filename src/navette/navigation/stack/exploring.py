@@ -16,9 +16,9 @@ _NAMES = ("map_frame", "base_frame", "footprint_m")
 
 def add_explorer(simulation: Simulation) -> ExplorerNode:
     """Add the explorer to a simulation, with the frames and width of its robot."""
-    planner = simulation.stack.planner.params
+    planner = simulation.stack.planner
     node = make_explorer(
-        simulation.context, [getattr(planner, name) for name in _NAMES]
+        simulation.context, [planner.get_parameter(name).value for name in _NAMES]
     )
     simulation.executor.add_node(node)
     node.on_done = simulation.stop

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
@@ -16,7 +17,9 @@ class RunOptions:
     ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
     time; infinity means as fast as possible. ``record`` is a new file; ``overwrite``
     replaces an existing recording. ``methods`` chooses the stages' methods: the keys of
-    :data:`navette.navigation.stack.methods.METHOD_PARAMETERS` → name or place. ``verb``
+    :data:`navette.navigation.stack.methods.METHOD_PARAMETERS` → name or place;
+    ``replacements`` are nodes of the stack → the user's class of nodes;
+    ``parameters`` are node → name → value, over those of all files. ``verb``
     is the command that starts the run. With ``share``, the run joins the network that
     all programs share; otherwise only this user's programs can join it.
     """
@@ -34,6 +37,8 @@ class RunOptions:
     tree: Path | None = None
     params_files: tuple[Path, ...] = field(default=())
     methods: Mapping[str, str] = field(default_factory=dict)
+    replacements: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     max_time_s: float | None = None
     port: int = 8765
     host: str = "127.0.0.1"

@@ -5,8 +5,8 @@ at the recording's time. Timers run, each message is processed completely before
 next, and the wall clock is not used: two replays write the same bytes.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,21 +16,18 @@ from navette.bags.play import PlayOptions, Source
 from navette.bags.play.node import PlayerNode
 from navette.errors import InvalidValueError
 from navette.msgs.topics import TF, TF_STATIC
+from navette.navigation.stack.programs import MakeNode, default_context
 from navette.navigation.stack.recorded_parameters import give_recorded_parameters
 from navette.runtime import (
     Context,
     Executor,
     LoggingSeverity,
-    Node,
     Parameter,
     Stopwatch,
     VirtualClock,
 )
-from navette.runtime.context import Scope, current_scope
 from navette.runtime.overrides import ParameterOverrides
 from navette.transports import EndpointKind
-
-MakeNode = Callable[[Context], Node]
 
 # Published by every node, independent of its function.
 _OF_EVERY_NODE = ("/rosout", "/parameter_events")
@@ -93,7 +90,7 @@ class Replay:
             overrides(self.context.overrides)
             given = len(self.context.overrides.sets)
             self.context.init(list(arguments), console_level=LoggingSeverity.WARN)
-            with _default_context(self.context):
+            with default_context(self.context):
                 self.nodes = [make(self.context) for make in makers]
             by_user = ParameterOverrides()
             by_user.sets = self.context.overrides.sets[given:]
@@ -199,16 +196,6 @@ class Replay:
         )
         self._stack.callback(recorder.close)
         return recorder
-
-
-@contextmanager
-def _default_context(context: Context) -> Iterator[None]:
-    """Make a context the default one, for nodes of programs."""
-    token = current_scope.set(Scope(context.graph, default=context))
-    try:
-        yield
-    finally:
-        current_scope.reset(token)
 
 
 def _with_topics(options: PlayOptions, topics: tuple[str, ...]) -> PlayOptions:

@@ -29,6 +29,7 @@ class ResolvedScene:
     params_file: Path | None
     derived: dict[str, dict[str, object]]
     topic_names: dict[str, str]
+    parameters: dict[str, dict[str, object]]
 
     def rename_topics(self, context: Context) -> None:
         """Give the nodes that are created from now on the robot's names of topics.
@@ -46,6 +47,8 @@ class ResolvedScene:
         """Add the robot's parameters for every node of the stack."""
         for node, values in self.derived.items():
             overrides.add(node, values, f"derived from robot {self.robot_name}")
+        for node, values in self.parameters.items():
+            overrides.add(node, values, f"parameters of robot {self.robot_name}")
         if self.params_file is not None:
             overrides.add_file(self.params_file)
 
@@ -69,7 +72,12 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
         scene = scene.with_robot(robot.model)
     derived = derive_parameters(robot.model)
     return ResolvedScene(
-        scene, robot.name, robot.params_file, derived, robot.topic_names
+        scene,
+        robot.name,
+        robot.params_file,
+        derived,
+        robot.topic_names,
+        robot.parameters,
     )
 
 

@@ -11,6 +11,7 @@ from navette.msgs.topics import CLOCK
 from navette.navigation.stack.methods import method_parameters
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.programs import MakeNode
 from navette.navigation.stack.reservation import reserve
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
 from navette.navigation.stack.stack import NavigationStack
@@ -45,6 +46,8 @@ class Simulation:
         scene: a world made in Python (:class:`navette.sim.World`) instead of that of
             the options.
         parameters: node → parameter → value, over those of the robot.
+        replacements: nodes of the user instead of the stack's; see
+            :meth:`NavigationStack.create`.
 
     Raises:
         NavetteError: invalid name, file, parameter or option, named in the text.
@@ -57,9 +60,11 @@ class Simulation:
         *,
         scene: Scene | None = None,
         parameters: Mapping[str, Mapping[str, object]] | None = None,
+        replacements: Mapping[str, MakeNode] | None = None,
     ) -> None:
         self.options = options
         self._parameters = parameters or {}
+        self._replacements = replacements or {}
         self.resolved = resolve_scene(options, scene)
         overrides = self._overrides(self.resolved)
         clock = _clock(options.speed)
@@ -124,6 +129,8 @@ class Simulation:
             overrides.add(node, dict(values), "parameters of the run")
         for path in self.options.params_files:
             overrides.add_file(path)
+        for node, given in self.options.parameters.items():
+            overrides.add(node, dict(given), "-p")
         return overrides
 
     def _create_nodes(self, on_change: Callable[[RunProgress], None]) -> None:
@@ -138,18 +145,31 @@ class Simulation:
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
         # Before the missions, so that it reports the last goal before they end the run.
         self.monitor = MonitorNode(context=context, on_change=on_change)
-        self.stack = NavigationStack.create(context)
+        self.stack = NavigationStack.create(context, self._replacements)
         self.viewer = (
             None
             if options.headless
             else ViewerNode(context=context, listeners=self._reserved.listeners)
         )
+        self._drop_overrides_of_replaced()
         context.check_overrides()
         self.executor = Executor(context=context)
         for node in context.nodes:
             self.executor.add_node(node)
         if options.ends_with_goals:
             self.stack.missions.on_done = self.stop
+
+    def _drop_overrides_of_replaced(self) -> None:
+        """Drop the robot's parameters for nodes that are replaced."""
+        overrides, present = self.context.overrides, self.context.nodes
+        names = {node.get_fully_qualified_name() for node in present}
+        gone = {f"/{name}" for name in self._replacements} - names
+        overrides.sets = [
+            each
+            for each in overrides.sets
+            if not (each.names_a_node and any(map(each.matches, gone)))
+            or any(map(each.matches, names))
+        ]
 
     def run(self) -> None:
         """Run until the goals are done (headless), the time limit, or :meth:`stop`.

@@ -1,11 +1,14 @@
 """The nodes of the stack in data-flow order."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from navette.errors import UnknownNameError
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.navigation.behaviors.node import BehaviorNode
 from navette.navigation.control.node import ControlNode
+from navette.navigation.control.params import ControlParams
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.navigation.localization.ekf.node import EkfNode
@@ -15,7 +18,8 @@ from navette.navigation.missions.explore.node import ExplorerNode
 from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
-from navette.runtime import Context, StageNode
+from navette.navigation.stack.programs import MakeNode, default_context
+from navette.runtime import Context, Node, StageNode
 from navette.sim.node import SimNode
 
 FLOW = (
@@ -48,6 +52,19 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
 )
 
 
+REPLACEABLE = (
+    "localizer",
+    "costmap",
+    "map_memory",
+    "planner",
+    "control",
+    "behaviors",
+)
+"""The nodes that programs of the user can replace, in the order of the stack."""
+
+_NOTHING: Mapping[str, MakeNode] = MappingProxyType({})
+
+
 def node_class(name: str) -> type[StageNode]:
     """Return the class of a stage that needs topics only, by its node's name.
 
@@ -68,27 +85,56 @@ class NavigationStack:
     Start localization nodes by name where required.
     """
 
-    localizer: LocalizerNode
-    costmap: CostmapNode
-    map_memory: MapMemoryNode
-    planner: PlannerNode
-    control: ControlNode
-    behaviors: BehaviorNode
+    localizer: Node
+    costmap: Node
+    map_memory: Node
+    planner: Node
+    control: Node
+    behaviors: Node
     arbiter: ArbiterNode
     missions: MissionNode
     lifecycle_manager: LifecycleManagerNode
 
     @classmethod
-    def create(cls, context: Context) -> "NavigationStack":
-        """Create all nodes, with the context's parameter overrides."""
+    def create(
+        cls, context: Context, replacements: Mapping[str, MakeNode] = _NOTHING
+    ) -> "NavigationStack":
+        """Create all nodes, with the context's parameter overrides.
+
+        Args:
+            context: context of the nodes.
+            replacements: names of :data:`REPLACEABLE` → what makes the node instead.
+
+        Raises:
+            UnknownNameError: no such node, or one that cannot be replaced.
+        """
+        for name in replacements:
+            if name not in REPLACEABLE:
+                raise UnknownNameError.of("node to replace", name, [*REPLACEABLE])
+
+        def made(name: str) -> Node:
+            if name in replacements:
+                with default_context(context):
+                    return replacements[name](context)
+            kind: Callable[..., Node] = node_class(name)
+            return kind(context=context)
+
         return cls(
-            localizer=LocalizerNode(context=context),
-            costmap=CostmapNode(context=context),
-            map_memory=MapMemoryNode(context=context),
-            planner=PlannerNode(context=context),
-            control=ControlNode(context=context),
-            behaviors=BehaviorNode(context=context),
+            localizer=made("localizer"),
+            costmap=made("costmap"),
+            map_memory=made("map_memory"),
+            planner=made("planner"),
+            control=made("control"),
+            behaviors=made("behaviors"),
             arbiter=ArbiterNode(context=context),
             missions=MissionNode(context=context),
             lifecycle_manager=LifecycleManagerNode(context=context),
         )
+
+    @property
+    def cruise_speed_mps(self) -> float | None:
+        """Cruise speed of the controller; None: it is not Navette's."""
+        if isinstance(self.control, ControlNode):
+            params: ControlParams = self.control.params
+            return params.cruise_speed_mps
+        return None
