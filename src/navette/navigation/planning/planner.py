@@ -97,7 +97,8 @@ class Planner:
         """Compile or load every kernel before the first goal."""
         reach = self.footprint.circumscribed_radius
         spec = GridSpec(reach / 4, 40, 40)
-        other = Planner(self.params)
+        own = PLANNERS.load(self.params.method).is_own  # is called for goals only
+        other = Planner(replace(self.params, method="a_star") if own else self.params)
         other.set_map(np.zeros(spec.shape, np.int8), spec)
         start, goal = Pose2(4 * reach, 5 * reach, 0.0), Goal(6 * reach, 5.1 * reach)
         other.plan(start, goal)
@@ -128,7 +129,7 @@ class Planner:
         margin is tried. With ``exact_start`` the path begins with the heading of the
         start: a robot between obstacles cannot steer towards another heading.
         """
-        if exact_start:
+        if exact_start and self._own is None:
             params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
             return self.with_params(params).plan(start, goal)
         refused = self._refusal(start, goal)
