@@ -41,7 +41,7 @@ def environment() -> Iterator[dict[str, str]]:
         yield {**variables, "NAVETTE_RUNTIME_DIR": folder}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(os.name != "posix", reason="private runs need POSIX")
 def test_a_commander_program_drives_over_the_network(
     environment: dict[str, str],

@@ -62,6 +62,7 @@ def drive(folder: Path) -> bytes:
     return bag.read_bytes()
 
 
+@pytest.mark.long
 def test_two_runs_of_the_split_stack_produce_the_same_bag(tmp_path: Path) -> None:
     """Byte for byte, including /rosout; and the robot reaches the goal."""
     first = drive(tmp_path / "first")

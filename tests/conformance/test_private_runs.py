@@ -25,7 +25,7 @@ from navette.storage.runs import VARIABLE, RunInfo, live_runs
 from navette.storage.runs.choice import NETWORK_VARIABLES
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.long,
     pytest.mark.skipif(os.name != "posix", reason="private runs need POSIX"),
 ]
 

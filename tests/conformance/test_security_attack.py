@@ -22,7 +22,7 @@ from navette.runtime import SystemClock
 from navette.transports.certificates import create_keys
 
 REASON = why_not()
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(REASON), reason=REASON)]
+pytestmark = [pytest.mark.long, pytest.mark.skipif(bool(REASON), reason=REASON)]
 
 ATTACKER = Path(__file__).parent / "attacker.py"
 NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)

@@ -11,7 +11,7 @@ from fleet import PROGRAMS, Fleet, until
 from free_ports import free_endpoint
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.long,
     pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
 ]
 

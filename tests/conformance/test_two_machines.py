@@ -11,7 +11,7 @@ from fleet import PROGRAMS, STACK, Fleet, until
 from two_machines import LAPTOP, ROBOT, Machines, Wire, why_not
 
 REASON = why_not()
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(REASON), reason=REASON)]
+pytestmark = [pytest.mark.long, pytest.mark.skipif(bool(REASON), reason=REASON)]
 
 
 class TwoFleets:

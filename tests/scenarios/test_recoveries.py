@@ -1,5 +1,7 @@
 """The recovery ladder of the default tree, with wheels that do not turn at first."""
 
+from pathlib import Path
+
 import pytest
 
 from navette.msgs.nav2_msgs.msg import BehaviorTreeLog
@@ -9,6 +11,19 @@ from navette.sim import World
 from .conftest import MakeSimulation
 
 SECOND = 1_000_000_000
+# A stuck robot is noticed after 4 s instead of 30 s.
+IMPATIENT = """\
+planner:
+  ros__parameters: {progress_timeout_s: 2.0, max_stuck_replans: 1}
+"""
+
+
+@pytest.fixture
+def impatient(tmp_path: Path) -> Path:
+    """Parameters with which the robot is soon stuck."""
+    file = tmp_path / "impatient.yaml"
+    file.write_text(IMPATIENT, encoding="utf-8")
+    return file
 
 
 def hold_wheels(simulation: Simulation, until_s: float) -> None:
@@ -44,12 +59,18 @@ LEAVES = {"Navigate", "ClearCostmapAroundRobot", "Spin", "Wait", "AvoidPlace"}
 
 
 @pytest.mark.slow
-def test_a_stuck_robot_recovers_and_arrives(simulate: MakeSimulation) -> None:
+def test_a_stuck_robot_recovers_and_arrives(
+    simulate: MakeSimulation, impatient: Path
+) -> None:
     room = World("room").add_walls((10.0, 10.0)).scene()
     simulation = simulate(
-        scene=room, robot="jackal", goals=((-3.0, 0.0),), max_time_s=120.0
+        scene=room,
+        robot="jackal",
+        goals=((-3.0, 0.0),),
+        params_files=(impatient,),
+        max_time_s=60.0,
     )
-    hold_wheels(simulation, until_s=65.0)
+    hold_wheels(simulation, until_s=9.0)
     names = started(simulation)
     simulation.run()
     (outcome,) = simulation.summary().goals
@@ -61,17 +82,21 @@ def test_a_stuck_robot_recovers_and_arrives(simulate: MakeSimulation) -> None:
 
 @pytest.mark.slow
 def test_a_robot_that_never_moves_gives_up_with_the_reason(
-    simulate: MakeSimulation,
+    simulate: MakeSimulation, impatient: Path
 ) -> None:
     room = World("room").add_walls((10.0, 10.0)).scene()
     simulation = simulate(
-        scene=room, robot="jackal", goals=((-3.0, 0.0),), max_time_s=300.0
+        scene=room,
+        robot="jackal",
+        goals=((-3.0, 0.0),),
+        params_files=(impatient,),
+        max_time_s=120.0,
     )
-    hold_wheels(simulation, until_s=300.0)
+    hold_wheels(simulation, until_s=120.0)
     names = started(simulation)
     simulation.run()
     (outcome,) = simulation.summary().goals
     assert outcome.result == "stuck"
-    assert outcome.time_s < 260.0
+    assert outcome.time_s < 100.0
     assert names.count("Navigate") == 6
     assert {"Spin", "Wait", "AvoidPlace"} <= set(names)
