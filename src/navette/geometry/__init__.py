@@ -1,5 +1,6 @@
 """Angles, poses, transforms and footprints."""
 
+from navette.geometry.drives import ACKERMANN, DIFFERENTIAL, DRIVES, OMNI
 from navette.geometry.footprint import Footprint
 from navette.geometry.se2 import Pose2, advanced, angle_difference, wrap_angle
 from navette.geometry.se3 import (
@@ -23,4 +24,8 @@ __all__ = [
     "angle_difference",
     "wrap_angle",
     "Footprint",
+    "DRIVES",
+    "DIFFERENTIAL",
+    "ACKERMANN",
+    "OMNI",
 ]

@@ -64,12 +64,18 @@ class Pose2(NamedTuple):
         )
 
 
-def advanced(pose: Pose2, speed: float, turn_rate: float, seconds: float) -> Pose2:
+def advanced(
+    pose: Pose2, speed: float, turn_rate: float, seconds: float, *, side: float = 0.0
+) -> Pose2:
     """Return the pose after an arc at constant speed (m/s) and turn rate (rad/s).
+
+    ``side`` is the speed to the left of an omnidirectional drive.
 
     The chord of the arc has the length v t · sin(θ/2)/(θ/2), in the direction of half
     the turn θ = ω t.
     """
     half = turn_rate * seconds / 2
-    chord = speed * seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
-    return pose @ Pose2(chord * math.cos(half), chord * math.sin(half), 2 * half)
+    share = seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
+    c, s = math.cos(half), math.sin(half)
+    x, y = share * (speed * c - side * s), share * (speed * s + side * c)
+    return pose @ Pose2(x, y, 2 * half)

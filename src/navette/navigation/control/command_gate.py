@@ -49,11 +49,15 @@ class CommandGate:
 
     def refusal(self, command: VelocityCommand) -> ControlState | None:
         """Return the state for a command that must not pass, or None."""
-        if not (math.isfinite(command.speed) and math.isfinite(command.turn_rate)):
+        if not all(map(math.isfinite, command)):
             return ControlState.COMMAND_NOT_FINITE
+        params = self.params
         if (
-            abs(command.speed) > self.params.max_speed_mps + _ROUNDING
-            or abs(command.turn_rate) > self.params.max_turn_rate_radps + _ROUNDING
+            abs(command.speed) > params.max_speed_mps + _ROUNDING
+            or abs(command.turn_rate) > params.max_turn_rate_radps + _ROUNDING
+            or abs(command.side) > params.max_side_speed_mps + _ROUNDING
+            or abs(command.turn_rate) * params.min_turning_radius_m
+            > abs(command.speed) + _ROUNDING
         ):
             return ControlState.COMMAND_OVER_LIMIT
         return None

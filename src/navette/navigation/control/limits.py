@@ -1,4 +1,4 @@
-"""Velocity, acceleration and wheel-speed limits of a differential drive."""
+"""Velocity, acceleration, wheel-speed and curvature limits of the drives."""
 
 import math
 from typing import NamedTuple
@@ -7,10 +7,17 @@ from navette.navigation.control.params import ControlParams
 
 
 class VelocityCommand(NamedTuple):
-    """Commanded forward speed (m/s) and turn rate (rad/s)."""
+    """Commanded forward speed (m/s), turn rate (rad/s) and speed to the left (m/s)."""
 
     speed: float
     turn_rate: float
+    side: float = 0.0
+
+    def scaled(self, share: float) -> "VelocityCommand":
+        """Return a share of the command: the same arc, driven slower."""
+        return VelocityCommand(
+            self.speed * share, self.turn_rate * share, self.side * share
+        )
 
 
 STOP = VelocityCommand(0.0, 0.0)
@@ -28,7 +35,7 @@ class SpeedCap(NamedTuple):
         if abs(command.speed) <= limit:
             return command
         factor = limit / abs(command.speed)
-        return VelocityCommand(command.speed * factor, command.turn_rate * factor)
+        return command.scaled(factor)
 
     @classmethod
     def percentage(cls, percent: float, params: ControlParams) -> "SpeedCap":
@@ -44,18 +51,31 @@ def clamp(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
     """Return the nearest allowed command of the same curvature.
 
     A wheel's rim moves at ``v ± ω·b/2``. Where one would be too fast, v and ω shrink by
-    the same factor, so that the robot stays on its arc.
+    the same factor, so that the robot stays on its arc. An Ackermann drive turns less
+    where the arc is too sharp.
     """
-    v, omega = command
-    rim = abs(v) + abs(omega) * params.wheel_separation_m / 2
+    command = steerable(command, params)
+    v, omega, side = command
+    rim = abs(v) + abs(side) + abs(omega) * params.wheel_separation_m / 2
     wheel = params.max_wheel_speed_mps
+    sideways = params.max_side_speed_mps
     factor = min(
         1.0,
         params.max_speed_mps / abs(v) if v else 1.0,
         params.max_turn_rate_radps / abs(omega) if omega else 1.0,
+        sideways / abs(side) if side else 1.0,
         wheel / rim if wheel and rim else 1.0,
     )
-    return VelocityCommand(v * factor, omega * factor)
+    return command.scaled(factor)
+
+
+def steerable(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
+    """Return the command with the turn rate that the steering reaches at its speed."""
+    radius = params.min_turning_radius_m
+    most = abs(command.speed) / radius if radius else math.inf
+    if abs(command.turn_rate) <= most:
+        return command
+    return command._replace(turn_rate=math.copysign(most, command.turn_rate))
 
 
 def approach(
@@ -64,19 +84,20 @@ def approach(
     """Step from the last command towards ``target`` within the accelerations."""
     target = clamp(target, params)
     v = _ramp(last.speed, target.speed, params, dt)
+    side = _ramp(last.side, target.side, params, dt)
     step = params.turn_acceleration_radps2 * dt
     omega = last.turn_rate + min(step, max(-step, target.turn_rate - last.turn_rate))
-    return clamp(VelocityCommand(v, omega), params)
+    return clamp(VelocityCommand(v, omega, side), params)
 
 
 def brake(last: VelocityCommand, params: ControlParams, dt: float) -> VelocityCommand:
     """Slow down on the present arc: the turn rate falls in proportion to the speed."""
-    if last.speed == 0.0:
+    speed = math.hypot(last.speed, last.side)
+    if speed == 0.0:
         step = params.turn_acceleration_radps2 * dt
         left = max(0.0, abs(last.turn_rate) - step)
         return clamp(VelocityCommand(0.0, math.copysign(left, last.turn_rate)), params)
-    v = _ramp(last.speed, 0.0, params, dt)
-    return clamp(VelocityCommand(v, last.turn_rate * v / last.speed), params)
+    return clamp(last.scaled(_ramp(speed, 0.0, params, dt) / speed), params)
 
 
 def _ramp(last: float, target: float, params: ControlParams, dt: float) -> float:

@@ -10,7 +10,8 @@ Parallel Computing" (2017), algorithm 2:
 5. the first command of the average is the result.
 
 The noise is drawn once from a seeded generator and used in turns, so that equal inputs
-give equal commands.
+give equal commands. A command is speed and turn rate, speed and curvature (Ackermann),
+or speed, speed to the left and turn rate (omnidirectional); see :mod:`.drive_models`.
 """
 
 from typing import NamedTuple
@@ -18,38 +19,51 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.control.limits import SpeedCap, VelocityCommand
+from navette.geometry import DRIVES
+from navette.navigation.control.drive_models import ACKERMANN, OMNI, DriveLimits
+from navette.navigation.control.limits import NO_CAP, SpeedCap, VelocityCommand
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.rollouts import (
     CostWeights,
-    DriveLimits,
     LocalField,
+    PathTable,
     PathWindow,
+    RolloutBody,
     rollout_costs,
 )
 
 Array = NDArray[np.float64]
+Array32 = NDArray[np.float32]
 
 # Sets of noise that are used in turns.
 _NOISE_SETS = 8
 # Share of the previous noise in the next step's: smooth candidates.
 _NOISE_MEMORY = 0.7
-# Candidates that are fixed manoeuvres: speed shares and turn-rate shares.
+# Standard deviation of the noise as a share of the largest speed and turn rate.
+_SPEED_NOISE, _TURN_NOISE = 0.3, 0.4
+# Candidates that are fixed manoeuvres: shares of the speed and of the turn rate or
+# curvature; omnidirectional drives have some that move sideways, too.
 _MANOEUVRES = tuple(
     (v, w)
     for v in (1.0, 0.6, 0.3, 0.0, -1.0)
     for w in (-1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0)
 )
+_SIDEWAYS = tuple((v, side) for v in (-0.5, 0.0, 0.5) for side in (-1.0, -0.4, 0.4, 1.0))
 
 
 class MotionState(NamedTuple):
-    """Pose in the map (m, rad), speed (m/s) and turn rate (rad/s)."""
+    """Pose in the map (m, rad), velocities of the base (m/s, rad/s), and steering.
+
+    ``side`` is the speed to the left, ``curvature`` (1/m) that of an Ackermann drive.
+    """
 
     x: float
     y: float
     yaw: float
     speed: float
     turn_rate: float
+    side: float = 0.0
+    curvature: float = 0.0
 
 
 class Mppi:
@@ -58,43 +72,24 @@ class Mppi:
     def __init__(self, params: ControlParams, body: Array, seed: int = 0) -> None:
         """Args: params; body (P, 3) x, y, disc radius (base frame, m); noise seed."""
         self._params = params
-        self._limits = DriveLimits(
-            max_speed=params.cruise_speed_mps,
-            max_reverse=params.reverse_speed_mps,
-            max_turn_rate=params.max_turn_rate_radps,
-            acceleration=params.acceleration_mps2,
-            deceleration=params.deceleration_mps2,
-            turn_acceleration=params.turn_acceleration_radps2,
-            lateral_acceleration=params.lateral_acceleration_mps2,
-        )
-        self._weights = CostWeights(
-            align=params.mppi_align_weight,
-            heading=params.mppi_heading_weight,
-            progress=params.mppi_progress_weight,
-            clearance=params.mppi_clearance_weight,
-            clearance_m=params.mppi_clearance_m,
-            reverse=params.mppi_reverse_weight,
-            effort=params.mppi_effort_weight,
-            margin_m=params.collision_margin_m,
-        )
+        self._drive = DRIVES.index(params.drive)
+        self._limits = _limits(params)
+        self._weights = _weights(params)
         self._step_s = params.mppi_step_s
         self._temperature = params.mppi_temperature
-        self._body = np.ascontiguousarray(body)
-        self._reach = float(np.hypot(body[:, 0], body[:, 1]).max())
+        self._body = RolloutBody.of(body)
         steps, samples = params.mppi_steps, params.mppi_samples
         self._noise = self._draw(samples, steps, np.random.default_rng(seed))
-        self._fixed = self._manoeuvres(steps)
-        self._commands = np.zeros((steps, 2))
-        self._costs = np.empty(samples + len(self._fixed))
+        self._fixed = self._manoeuvres()
+        self._commands = np.zeros((steps, len(self._most)), np.float32)
+        count = samples + self._fixed.shape[1]
+        self._candidates = np.empty((steps, len(self._most), count), np.float32)
+        self._costs = np.empty(count, np.float32)
         self._turn = 0
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
-        params = self._params
-        self._limits = self._limits._replace(
-            max_speed=min(params.cruise_speed_mps, limits.forward),
-            max_reverse=min(params.reverse_speed_mps, limits.reverse),
-        )
+        self._limits = _limits(self._params, limits)
 
     def reset(self) -> None:
         """Forget the command sequence: the robot stands."""
@@ -110,71 +105,119 @@ class Mppi:
     ) -> VelocityCommand:
         """Return the command for the next ``dt`` seconds."""
         self._shift(dt)
-        noise = self._noise[self._turn]
-        self._turn = (self._turn + 1) % _NOISE_SETS
-        candidates = self._candidates(noise)
+        candidates = self._draw_candidates()
+        motion = state.speed, state.side, state.turn_rate, state.curvature
+        fastest = max(abs(state.speed) + abs(state.side), sum(self._most[:-1]))
         rollout_costs(
             candidates,
-            np.array(state),
-            self._step_s,
+            np.array((state.yaw, *motion)),
+            np.float32(self._step_s),
+            self._drive,
             self._limits,
-            path,
-            field,
+            PathTable.of(path, state.x, state.y, float(self._step_s * fastest)),
+            field._replace(x=field.x - state.x, y=field.y - state.y),
             self._body,
-            self._reach,
             self._weights,
             self._costs,
         )
         self._average(candidates)
-        v, w = self._commands[0]
-        return VelocityCommand(float(v), float(w))
+        return self._first_command()
 
     def _shift(self, dt: float) -> None:
         """Move the sequence by ``dt``, interpolating between its steps."""
         share = min(1.0, dt / self._step_s)
         self._commands[:-1] += share * (self._commands[1:] - self._commands[:-1])
 
-    def _candidates(self, noise: Array) -> Array:
-        return np.concatenate([self._commands + noise, self._fixed])
+    def _draw_candidates(self) -> Array:
+        """Return the candidates (T, D, K): noise about the sequence, and manoeuvres."""
+        noise = self._noise[self._turn]
+        self._turn = (self._turn + 1) % _NOISE_SETS
+        samples = noise.shape[2]
+        np.add(noise, self._commands[:, :, None], out=self._candidates[:, :, :samples])
+        self._candidates[:, :, samples:] = self._fixed
+        return self._candidates
 
     def _average(self, candidates: Array) -> None:
         costs = self._costs
-        least = costs.min()
-        weight = np.exp(-(costs - least) / self._temperature)
+        weight = np.exp((costs.min() - costs) / np.float32(self._temperature))
         weight /= weight.sum()
-        self._commands = np.tensordot(weight, candidates, 1)
+        # Within the limits: a mean of candidates that are.
+        self._commands = candidates @ weight
+
+    def _first_command(self) -> VelocityCommand:
+        first = [float(value) for value in self._commands[0]]
+        if self._drive == OMNI:
+            return VelocityCommand(first[0], first[2], first[1])
+        if self._drive == ACKERMANN:
+            return VelocityCommand(first[0], first[0] * first[1])
+        return VelocityCommand(first[0], first[1])
+
+    @property
+    def _most(self) -> tuple[float, ...]:
+        """Largest magnitude of each part of a command."""
         limits = self._limits
-        np.clip(
-            self._commands,
-            (-limits.max_reverse, -limits.max_turn_rate),
-            (limits.max_speed, limits.max_turn_rate),
-            out=self._commands,
-        )
+        if self._drive == OMNI:
+            return limits.max_speed, limits.max_side_speed, limits.max_turn_rate
+        if self._drive == ACKERMANN:
+            return limits.max_speed, limits.max_curvature
+        return limits.max_speed, limits.max_turn_rate
 
     def _draw(self, samples: int, steps: int, rng: np.random.Generator) -> Array:
-        """Return noise (sets, K, T, 2), correlated over time; the first K is zero."""
-        scale = np.array(
-            [0.3 * self._limits.max_speed, 0.4 * self._limits.max_turn_rate]
-        )
-        white = rng.standard_normal((_NOISE_SETS, samples, steps, 2))
+        """Return noise (sets, T, D, K), correlated over time; the first K is zero."""
+        scale = np.array([_SPEED_NOISE * most for most in self._most])
+        scale[-1] = _TURN_NOISE * self._most[-1]
+        white = rng.standard_normal((_NOISE_SETS, samples, steps, len(scale)))
         keep = _NOISE_MEMORY
         for t in range(1, steps):
             white[:, :, t] = (
                 keep * white[:, :, t - 1] + (1 - keep**2) ** 0.5 * white[:, :, t]
             )
         white[:, 0] = 0.0
-        noise: Array = white * scale
-        return noise
+        return np.ascontiguousarray(np.moveaxis(white * scale, 1, 3), np.float32)
 
-    def _manoeuvres(self, steps: int) -> Array:
+    def _manoeuvres(self) -> Array:
+        """Return the commands (D, F) of the fixed manoeuvres."""
         limits = self._limits
-        commands = np.array(
-            [
-                (
-                    v * (limits.max_speed if v > 0 else limits.max_reverse),
-                    w * limits.max_turn_rate,
-                )
-                for v, w in _MANOEUVRES
-            ]
-        )
-        return np.repeat(commands[:, None, :], steps, axis=1)
+        forward, turn = limits.max_speed, self._most[-1]
+        moves = [
+            (v * (forward if v > 0 else limits.max_reverse), w * turn)
+            for v, w in _MANOEUVRES
+        ]
+        if self._drive != OMNI:
+            return np.array(moves).T
+        rolling = [(v, 0.0, w) for v, w in moves]
+        sliding = [
+            (v * forward, side * limits.max_side_speed, 0.0) for v, side in _SIDEWAYS
+        ]
+        return np.array(rolling + sliding).T
+
+
+def _weights(params: ControlParams) -> CostWeights:
+    values = CostWeights(
+        align=params.mppi_align_weight,
+        heading=params.mppi_heading_weight,
+        progress=params.mppi_progress_weight,
+        clearance=params.mppi_clearance_weight,
+        clearance_m=params.mppi_clearance_m,
+        reverse=params.mppi_reverse_weight,
+        effort=params.mppi_effort_weight,
+        margin_m=params.collision_margin_m,
+    )
+    return CostWeights(*map(np.float32, values))
+
+
+def _limits(params: ControlParams, cap: SpeedCap = NO_CAP) -> DriveLimits:
+    radius = params.min_turning_radius_m
+    values = DriveLimits(
+        max_speed=min(params.cruise_speed_mps, cap.forward),
+        max_reverse=min(params.reverse_speed_mps, cap.reverse),
+        max_turn_rate=params.max_turn_rate_radps,
+        acceleration=params.acceleration_mps2,
+        deceleration=params.deceleration_mps2,
+        turn_acceleration=params.turn_acceleration_radps2,
+        lateral_acceleration=params.lateral_acceleration_mps2,
+        max_curvature=1.0 / radius if radius else 0.0,
+        curvature_rate=1.0 / (radius * params.steering_time_s) if radius else 0.0,
+        max_side_speed=min(params.max_side_speed_mps, cap.forward),
+    )
+    return DriveLimits(*map(np.float32, values))

@@ -326,7 +326,9 @@ class ControlNode(StageNode):
             return
         speed, turn_rate = self._tracker.velocity
         pose = self._tracker.predicted_now(self._now_ns) or UNKNOWN_POSE
-        inputs = FollowerInputs(pose, speed, turn_rate, self._ages())
+        inputs = FollowerInputs(
+            pose, speed, turn_rate, self._ages(), self._tracker.side_speed
+        )
         output = self._step(inputs)
         self._send(output)
         self._report(output)
@@ -392,7 +394,7 @@ class ControlNode(StageNode):
                 return
             self._zeros_left -= 1
         twist = Twist()
-        twist.linear.x, twist.angular.z = output.command
+        twist.linear.x, twist.angular.z, twist.linear.y = output.command
         self.publish(topics.CMD_VEL_NAV.name, twist)
 
     def _report(self, output: FollowerOutput) -> None:

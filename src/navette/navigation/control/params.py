@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
-from navette.geometry import Footprint
+from navette.geometry import ACKERMANN, DIFFERENTIAL, DRIVES, OMNI, Footprint
 from navette.navigation.control.methods import CONTROLLERS
 from navette.params import Params, param
 
@@ -20,6 +20,12 @@ class ControlParams(Params):
         20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0
     )
 
+    drive: str = param(
+        DIFFERENTIAL,
+        "motions of the base: turns in place, bends of a least radius (ackermann), or "
+        "sideways, too (omni)",
+        choices=DRIVES,
+    )
     cruise_speed_mps: float = param(
         0.5, "speed on a straight, free path", unit="m/s", above=0.0
     )
@@ -31,6 +37,16 @@ class ControlParams(Params):
     )
     max_turn_rate_radps: float = param(
         1.0, "limit of the commanded turn rate", unit="rad/s", above=0.0
+    )
+    max_side_speed_mps: float = param(
+        0.0, "omni: limit of the speed to the left and to the right", unit="m/s",
+        at_least=0.0,
+    )  # fmt: skip
+    min_turning_radius_m: float = param(
+        0.0, "ackermann: least radius of a bend", unit="m", at_least=0.0
+    )
+    steering_time_s: float = param(
+        0.2, "ackermann: time from straight to the sharpest bend", unit="s", above=0.0
     )
     acceleration_mps2: float = param(
         1.0, "limit on increasing the commanded speed", unit="m/s²", above=0.0
@@ -186,6 +202,16 @@ class ControlParams(Params):
                 f"cruise_speed_mps {self.cruise_speed_mps:g} and reverse_speed_mps "
                 f"{self.reverse_speed_mps:g}: must be <= max_speed_mps "
                 f"{self.max_speed_mps:g}"
+            )
+        if (self.drive == ACKERMANN) != (self.min_turning_radius_m > 0):
+            raise ParameterError(
+                f"min_turning_radius_m {self.min_turning_radius_m:g}: must be > 0 with "
+                f"drive {ACKERMANN!r} and 0 with others; drive is {self.drive!r}"
+            )
+        if (self.drive == OMNI) != (self.max_side_speed_mps > 0):
+            raise ParameterError(
+                f"max_side_speed_mps {self.max_side_speed_mps:g}: must be > 0 with "
+                f"drive {OMNI!r} and 0 with others; drive is {self.drive!r}"
             )
         if self.lookahead_min_m > self.lookahead_m:
             raise ParameterError(

@@ -175,7 +175,7 @@ class PathFollower:
                 self._active.reconsider()
             return STOP, True
         self._scale = scale = min(1.0, scale)
-        return VelocityCommand(command.speed * scale, command.turn_rate * scale), False
+        return command.scaled(scale), False
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         return self._emit(STOP, state)

@@ -140,7 +140,9 @@ class PredictiveFollower:
         if abs(self._cross_track) > self._params.max_deviation_m:
             command = brake(last, self._params, dt)
             return self._emit(command, ControlState.OFF_PATH)
-        ahead = advanced(inputs.pose, *last, _DELAY_S)
+        ahead = advanced(
+            inputs.pose, last.speed, last.turn_rate, _DELAY_S, side=last.side
+        )
         wanted = self._mppi.step(
             MotionState(*ahead, *last), self._near(self._path), self._field, dt
         )
@@ -155,8 +157,7 @@ class PredictiveFollower:
         if scale < _BLOCKED_SCALE:
             return self._emit(STOP, ControlState.BLOCKED)
         self._scale = scale = min(1.0, scale)
-        scaled = VelocityCommand(command.speed * scale, command.turn_rate * scale)
-        return self._emit(scaled, ControlState.FOLLOWING)
+        return self._emit(command.scaled(scale), ControlState.FOLLOWING)
 
     def _advance(self, path: PathWindow, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""

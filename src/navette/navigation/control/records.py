@@ -18,6 +18,8 @@ UNKNOWN_POSE = Pose2(math.nan, math.nan, math.nan)
 class FollowerInputs:
     """Pose of the base in the map, motion (m/s, rad/s), and ages of the inputs.
 
+    ``side_speed`` is the speed to the left, m/s.
+
     With :data:`UNKNOWN_POSE` the robot stays stopped.
     """
 
@@ -25,6 +27,7 @@ class FollowerInputs:
     speed: float
     turn_rate: float
     ages: InputAges = FRESH
+    side_speed: float = 0.0
 
     @property
     def plausible(self) -> bool:
@@ -32,7 +35,7 @@ class FollowerInputs:
         return (
             math.hypot(self.pose.x, self.pose.y) <= FARTHEST_M
             and abs(self.pose.yaw) <= FARTHEST_M
-            and math.hypot(self.speed, self.turn_rate) <= _FASTEST
+            and math.hypot(self.speed, self.turn_rate, self.side_speed) <= _FASTEST
         )
 
 

@@ -1,4 +1,10 @@
-"""Compiled rollouts of command sequences, and their cost."""
+"""Compiled rollouts of command sequences, and their cost.
+
+The samples of a chunk advance together, one float32 array per quantity, so that the
+compiler vectorises the loops over them. Positions are relative to the robot: float32
+has 0.1 µm there, and centimetres at UTM coordinates. The cost of a sample does not
+depend on the others.
+"""
 
 import math
 from typing import NamedTuple
@@ -6,30 +12,39 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.control.drive_models import (
+    ACKERMANN,
+    CURVATURE,
+    DIFFERENTIAL,
+    FORWARD,
+    SIDE,
+    TURN_RATE,
+    DriveLimits,
+    advance_ackermann,
+    advance_differential,
+    advance_omni,
+)
 from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
+Array32 = NDArray[np.float32]
+Indices = NDArray[np.int32]
 
 # Metres that a radian of heading error or of turning in place counts as.
 METRES_PER_RADIAN = 0.5
 # Cost of a rollout that collides; earlier collisions cost more.
 COLLISION = 200.0
+# Samples that advance together: their arrays stay in the first-level cache.
+CHUNK = 256
+# Poses of the path that a sample may advance in one step.
+_MOST_POSES = 8
 
-
-class DriveLimits(NamedTuple):
-    """Limits of a differential drive; m, s, rad."""
-
-    max_speed: float
-    max_reverse: float
-    max_turn_rate: float
-    acceleration: float
-    deceleration: float
-    turn_acceleration: float
-    lateral_acceleration: float
+# Rows of poses (4, n): position (m), cosine and sine of the heading.
+_X, _Y, _COS, _SIN = 0, 1, 2, 3
 
 
 class CostWeights(NamedTuple):
-    """Weights of the critics; see ControlParams."""
+    """Weights of the critics in float32; see ControlParams."""
 
     align: float
     heading: float
@@ -59,178 +74,338 @@ class PathWindow(NamedTuple):
     direction: NDArray[np.int8]
 
 
+class PathTable(NamedTuple):
+    """A :class:`PathWindow` for kernels.
+
+    Attributes:
+        poses: (6, N + reach) float32, rows x, y (relative to the robot), cos, sin,
+            measure, direction; the last pose is repeated.
+        reach: number of poses that a sample can advance in one step.
+    """
+
+    poses: Array32
+    reach: int
+
+    @classmethod
+    def of(cls, path: PathWindow, x: float, y: float, farthest_m: float) -> "PathTable":
+        """Args: path; position of the robot (m, map); longest motion in a step (m)."""
+        measure = path.measure
+        count = len(measure)
+        spacing = (measure[-1] - measure[0]) / max(count - 1, 1)
+        reach = min(_MOST_POSES, math.ceil(farthest_m / max(spacing, 1e-3)) + 1)
+        poses = np.empty((6, count + reach), np.float32)
+        poses[0, :count], poses[1, :count] = path.x - x, path.y - y
+        poses[2, :count], poses[3, :count] = path.cos, path.sin
+        poses[4, :count], poses[5, :count] = measure - measure[0], path.direction
+        poses[:, count:] = poses[:, count - 1 : count]
+        return cls(poses, reach)
+
+
 class LocalField(NamedTuple):
     """Distance to the obstacles around the robot.
 
     Attributes:
-        distance_m: (H, W) float32 between cell centres.
+        distance_m: (H, W) float32 between cell centres; the border is far from all.
         x, y: corner of cell (0, 0) in the map; the grid is not rotated.
         resolution: edge of a cell, m.
     """
 
-    distance_m: NDArray[np.float32]
+    distance_m: Array32
     x: float
     y: float
     resolution: float
 
 
-@kernel(nogil=True)
+class RolloutBody(NamedTuple):
+    """Points (P, 3) x, y, disc radius of the body, base frame, and their reach; m."""
+
+    points: Array32
+    reach_m: float
+
+    @classmethod
+    def of(cls, points: Array) -> "RolloutBody":
+        """Args: points; see :func:`navette.navigation.grids.body_points`."""
+        reach = float(np.hypot(points[:, 0], points[:, 1]).max())
+        return cls(np.ascontiguousarray(points, np.float32), reach)
+
+
+@kernel(nogil=True, fastmath=True)
 def rollout_costs(
-    candidates: Array,
+    commands: Array32,
     start: Array,
-    step_s: float,
+    step_s: np.float32,
+    drive: int,
     limits: DriveLimits,
-    path: PathWindow,
+    path: PathTable,
     field: LocalField,
-    body: Array,
-    reach_m: float,
+    body: RolloutBody,
     weights: CostWeights,
-    costs: Array,
+    costs: Array32,
 ) -> None:
-    """Write the cost of every candidate.
+    """Write the cost of every sample.
 
     Args:
-        candidates: (K, T, 2) speed and turn rate; limited here in place.
-        start: x, y, yaw, speed, turn rate.
+        commands: (T, D, K) of K samples at T steps, limited here in place; D is
+            speed and turn rate (differential), speed and curvature (Ackermann), or
+            speed, speed to the left and turn rate (omni).
+        start: yaw, forward speed, speed to the left, turn rate, curvature.
         step_s: time of a step.
+        drive: code of the drive.
         limits: limits of the drive.
-        path: the path to follow.
-        field: distance to obstacles.
-        body: (P, 3) x, y, disc radius, base frame.
-        reach_m: largest distance of a body point from the base.
+        path: the path to follow, relative to the robot.
+        field: distance to obstacles, relative to the robot.
+        body: points of the body.
         weights: weights of the critics.
         costs: (K,), written.
     """
-    for k in range(candidates.shape[0]):
-        costs[k] = _cost(
-            candidates[k], start, step_s, limits, path, field, body, reach_m, weights
-        )
+    count = costs.shape[0]
+    for first in range(0, count, CHUNK):
+        last = min(count, first + CHUNK)
+        _chunk_costs(commands, first, start, step_s, drive, limits, path, field,
+                     body, weights, costs[first:last])  # fmt: skip
 
 
-@kernel(nogil=True)
-def _cost(
-    commands: Array,
+@kernel(nogil=True, fastmath=True)
+def _chunk_costs(
+    commands: Array32,
+    first: int,
     start: Array,
-    step_s: float,
+    step_s: np.float32,
+    drive: int,
     limits: DriveLimits,
-    path: PathWindow,
+    path: PathTable,
     field: LocalField,
-    body: Array,
-    reach_m: float,
+    body: RolloutBody,
     weights: CostWeights,
-) -> float:
-    x, y, v, w = start[0], start[1], start[3], start[4]
-    c, s = math.cos(start[2]), math.sin(start[2])
+    costs: Array32,
+) -> None:
+    n = costs.size
+    last = first + n
     steps = commands.shape[0]
-    last = path.x.shape[0] - 1
-    at = 0
-    cost = 0.0
-    faster, slower = limits.acceleration * step_s, limits.deceleration * step_s
-    turn_change = limits.turn_acceleration * step_s
+    pose, speed = np.empty((4, n), np.float32), np.empty((4, n), np.float32)
+    pose[_X], pose[_Y] = 0.0, 0.0
+    pose[_COS], pose[_SIN] = math.cos(start[0]), math.sin(start[0])
+    for row in range(4):
+        speed[row] = start[1 + row]
+    steering = CURVATURE if drive == ACKERMANN else TURN_RATE
+    before, apart = np.empty(n, np.float32), np.empty(n, np.float32)
+    at, from_ = np.zeros(n, np.int32), np.empty(n, np.int32)
+    near = np.empty((5, n), np.float32)
+    index, cells = np.empty(n, np.int32), np.empty(n, np.int32)
+    costs[:] = 0.0
     for t in range(steps):
-        # 1. the command within the limits
-        v_to = min(limits.max_speed, max(-limits.max_reverse, commands[t, 0]))
-        w_to = min(limits.max_turn_rate, max(-limits.max_turn_rate, commands[t, 1]))
-        change = slower if v_to * v < 0.0 or abs(v_to) < abs(v) else faster
-        v += min(change, max(-change, v_to - v))
-        dw = min(turn_change, max(-turn_change, w_to - w))
-        w += dw
-        if abs(v * w) > limits.lateral_acceleration:
-            v = math.copysign(limits.lateral_acceleration / abs(w), v)
-        commands[t, 0], commands[t, 1] = v, w
-        # 2. the motion, with the heading at half of the step
-        cos, sin = _small_rotation(0.5 * w * step_s)
-        c, s = c * cos - s * sin, s * cos + c * sin
-        x += v * step_s * c
-        y += v * step_s * s
-        c, s = c * cos - s * sin, s * cos + c * sin
-        # 3. obstacles
-        clearance = _clearance(field, body, reach_m, x, y, c, s, weights.clearance_m)
-        if clearance < weights.clearance_m:
-            lack = (weights.clearance_m - clearance) / weights.clearance_m
-            cost += weights.clearance * lack * lack * step_s
-            if clearance < weights.margin_m:
-                depth = 1.0 + min(1.0, (weights.margin_m - clearance) / 0.1)
-                cost += COLLISION * depth * (1.0 - 0.5 * t / steps) / steps
-        # 4. the path
-        at = _nearest(path, at, last, x, y, c, s)
-        dx, dy = x - path.x[at], y - path.y[at]
-        cost += weights.align * (dx * dx + dy * dy) * step_s
-        turned = 2.0 * (1.0 - c * path.cos[at] - s * path.sin[at])
-        cost += weights.heading * turned * step_s
-        if v * path.direction[at] < 0.0:
-            cost += weights.reverse * abs(v) * step_s
-        cost += weights.effort * dw * dw
-    ahead = path.measure[last] - path.measure[at]
-    dx, dy = x - path.x[at], y - path.y[at]
-    ahead += 0.5 * math.sqrt(dx * dx + dy * dy)
-    total: float = cost + weights.progress * ahead
-    return total
+        before[:] = speed[steering]
+        speeds, turns = commands[t, 0, first:last], commands[t, 1, first:last]
+        if drive == DIFFERENTIAL:
+            advance_differential(limits, step_s, speeds, turns, speed)
+        elif drive == ACKERMANN:
+            advance_ackermann(limits, step_s, speeds, turns, speed)
+        else:
+            rates = commands[t, 2, first:last]
+            advance_omni(limits, step_s, speeds, turns, rates, speed)
+        _effort_costs(before, speed[steering], weights.effort, costs)
+        _move(pose, speed, step_s)
+        found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
+        if found > 0:
+            _clearances(field, body, weights.clearance_m, near, cells, found)
+            earlier = np.float32((1.0 - 0.5 * t / steps) / steps)
+            _clearance_costs(near[4], found, index, weights, step_s, earlier, costs)
+        _nearest(path, pose, from_, at, apart)
+        _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
+    _remaining_costs(pose, path, at, weights.progress, costs)
 
 
-@kernel(nogil=True)
-def _small_rotation(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle below 0.5 rad, to 1e-6."""
-    a2 = angle * angle
-    return 1.0 - a2 * (0.5 - a2 / 24.0), angle * (1.0 - a2 * (1.0 / 6.0 - a2 / 120.0))
+@kernel(nogil=True, fastmath=True)
+def _effort_costs(
+    before: Array32, after: Array32, weight: np.float32, costs: Array32
+) -> None:
+    for i in range(costs.size):
+        change = after[i] - before[i]
+        costs[i] += weight * change * change
 
 
-@kernel(nogil=True)
-def _nearest(
-    path: PathWindow, at: int, last: int, x: float, y: float, c: float, s: float
-) -> int:
-    """Advance along the path while one of the next two poses is nearer."""
-    here = _apart(path, at, x, y, c, s)
-    while at < last:
-        following = _apart(path, at + 1, x, y, c, s)
-        if following > here:
-            if at + 2 > last:
-                break
-            following = _apart(path, at + 2, x, y, c, s)
-            if following > here:
-                break
-            at += 1
-        at += 1
-        here = following
-    return at
+@kernel(nogil=True, fastmath=True)
+def _move(pose: Array32, speed: Array32, step_s: np.float32) -> None:
+    """Drive a step, with the heading at half of it.
+
+    Cosine and sine of half the turn are series, to 1e-6 below 0.5 rad.
+    """
+    F = np.float32
+    x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
+    forward, side, turn_rate = speed[FORWARD], speed[SIDE], speed[TURN_RATE]
+    for i in range(x.size):
+        half = F(0.5) * turn_rate[i] * step_s
+        a2 = half * half
+        ch = F(1.0) - a2 * (F(0.5) - a2 * F(1.0 / 24.0))
+        sh = half * (F(1.0) - a2 * (F(1.0 / 6.0) - a2 * F(1.0 / 120.0)))
+        c, s = cos[i] * ch - sin[i] * sh, sin[i] * ch + cos[i] * sh
+        x[i] += step_s * (forward[i] * c - side[i] * s)
+        y[i] += step_s * (forward[i] * s + side[i] * c)
+        cos[i], sin[i] = c * ch - s * sh, s * ch + c * sh
 
 
-@kernel(nogil=True)
-def _apart(path: PathWindow, i: int, x: float, y: float, c: float, s: float) -> float:
-    """Return a squared distance between poses; 2 (1 − cos θ) stands for θ²."""
-    dx, dy = x - path.x[i], y - path.y[i]
-    turned = 2.0 * (1.0 - c * path.cos[i] - s * path.sin[i])
-    apart: float = dx * dx + dy * dy + METRES_PER_RADIAN**2 * turned
-    return apart
-
-
-@kernel(nogil=True)
-def _clearance(
+@kernel(nogil=True, fastmath=True)
+def _near_obstacles(
+    pose: Array32,
     field: LocalField,
-    body: Array,
-    reach_m: float,
-    x: float,
-    y: float,
-    c: float,
-    s: float,
-    enough_m: float,
-) -> float:
-    """Return the clearance of the body, from the nearest cells; at most enough."""
-    per_metre = 1.0 / field.resolution
-    u, v = (x - field.x) * per_metre, (y - field.y) * per_metre
+    body: RolloutBody,
+    enough_m: np.float32,
+    near: Array32,
+    index: Indices,
+) -> int:
+    """Collect the samples whose clearance may be less than enough; return how many.
+
+    Rows 0-3 of ``near`` get u, v (cells), cosine and sine (cells per metre).
+    """
+    F = np.float32
+    per_metre = F(1.0 / field.resolution)
+    left, bottom = F(field.x / field.resolution), F(field.y / field.resolution)
     height, width = field.distance_m.shape
-    half_cell = 0.5 * field.resolution
-    if not (0.0 <= u < width and 0.0 <= v < height):
-        return enough_m
-    here = field.distance_m[np.uint32(v), np.uint32(u)] - half_cell
-    if here - reach_m >= enough_m:
-        return enough_m
-    c, s = c * per_metre, s * per_metre
-    least = enough_m
-    for k in range(body.shape[0]):
-        bx, by = body[k, 0], body[k, 1]
-        pu, pv = u + c * bx - s * by, v + s * bx + c * by
-        if 0.0 <= pu < width and 0.0 <= pv < height:
-            there = field.distance_m[np.uint32(pv), np.uint32(pu)] - body[k, 2]
-            least = min(least, there - half_cell)
-    return least
+    needed = F(enough_m + body.reach_m + 0.5 * field.resolution)
+    x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
+    found = 0
+    for i in range(x.size):
+        u, v = x[i] * per_metre - left, y[i] * per_metre - bottom
+        if (
+            F(0.0) <= u < F(width)
+            and F(0.0) <= v < F(height)
+            and field.distance_m[np.uint32(v), np.uint32(u)] < needed
+        ):
+            near[0, found], near[1, found] = u, v
+            near[2, found] = cos[i] * per_metre
+            near[3, found] = sin[i] * per_metre
+            index[found] = i
+            found += 1
+    return found
+
+
+@kernel(nogil=True, fastmath=True)
+def _clearances(
+    field: LocalField,
+    body: RolloutBody,
+    enough_m: np.float32,
+    near: Array32,
+    cells: Indices,
+    count: int,
+) -> None:
+    """Write the clearance of the bodies to row 4 of ``near``; at most enough."""
+    for i in range(count):
+        near[4, i] = enough_m
+    flat = field.distance_m.reshape(-1)
+    half_cell = np.float32(0.5 * field.resolution)
+    for k in range(body.points.shape[0]):
+        _cells_of_point(field.distance_m.shape, body.points[k], near, cells[:count])
+        _lower(flat, cells[:count], body.points[k, 2] + half_cell, near[4])
+
+
+@kernel(nogil=True, fastmath=True)
+def _cells_of_point(
+    shape: tuple[int, int], point: Array32, near: Array32, cells: Indices
+) -> None:
+    """Write the flat index of the cell of a body point for every sample."""
+    F, I = np.float32, np.int32
+    right, top, stride = F(shape[1] - 1), F(shape[0] - 1), I(shape[1])
+    bx, by = point[0], point[1]
+    u, v, cos, sin = near[0], near[1], near[2], near[3]
+    for i in range(cells.size):
+        pu = u[i] + cos[i] * bx - sin[i] * by
+        pv = v[i] + sin[i] * bx + cos[i] * by
+        column = I(min(right, max(F(0.0), pu)))
+        row = I(min(top, max(F(0.0), pv)))
+        cells[i] = row * stride + column
+
+
+@kernel(nogil=True, fastmath=True)
+def _lower(flat: Array32, cells: Indices, less: np.float32, least: Array32) -> None:
+    for i in range(cells.size):
+        there = flat[np.uint32(cells[i])] - less
+        least[i] = min(least[i], there)
+
+
+@kernel(nogil=True, fastmath=True)
+def _clearance_costs(
+    clearance: Array32,
+    count: int,
+    index: Indices,
+    weights: CostWeights,
+    step_s: np.float32,
+    earlier: np.float32,
+    costs: Array32,
+) -> None:
+    F = np.float32
+    enough, margin = weights.clearance_m, weights.margin_m
+    per_lack = weights.clearance * step_s / (enough * enough)
+    collision = F(COLLISION) * earlier
+    for i in range(count):
+        lack = enough - clearance[i]
+        depth = F(1.0) + min(F(1.0), (margin - clearance[i]) * F(10.0))
+        collides = collision * depth if clearance[i] < margin else F(0.0)
+        costs[np.uint32(index[i])] += per_lack * lack * lack + collides
+
+
+@kernel(nogil=True, fastmath=True)
+def _nearest(
+    path: PathTable, pose: Array32, from_: Indices, at: Indices, apart: Array32
+) -> None:
+    """Advance every sample to the nearest of the poses that it can have reached.
+
+    ``apart`` gets the squared distance, in which 2 (1 − cos θ) stands for θ².
+    """
+    F = np.float32
+    x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
+    px, py, pc, ps = path.poses[0], path.poses[1], path.poses[2], path.poses[3]
+    per_turn = F(2.0 * METRES_PER_RADIAN**2)
+    last = np.int32(path.poses.shape[1] - 1 - path.reach)
+    for i in range(at.size):
+        from_[i] = at[i]
+        apart[i] = F(1e30)
+    for k in range(path.reach + 1):
+        ahead = np.int32(k)
+        for i in range(at.size):
+            j = np.int32(from_[i] + ahead)
+            to = np.uint32(j)
+            dx, dy = x[i] - px[to], y[i] - py[to]
+            turned = F(1.0) - cos[i] * pc[to] - sin[i] * ps[to]
+            there = dx * dx + dy * dy + per_turn * turned
+            nearer = there < apart[i]
+            apart[i] = there if nearer else apart[i]
+            at[i] = min(j, last) if nearer else at[i]
+
+
+@kernel(nogil=True, fastmath=True)
+def _path_costs(
+    pose: Array32,
+    forward: Array32,
+    path: PathTable,
+    at: Indices,
+    apart: Array32,
+    weights: CostWeights,
+    step_s: np.float32,
+    costs: Array32,
+) -> None:
+    """Add the costs of the distance from the path and of driving against it."""
+    F = np.float32
+    cos, sin = pose[_COS], pose[_SIN]
+    pc, ps, direction = path.poses[2], path.poses[3], path.poses[5]
+    per_turn = F(METRES_PER_RADIAN**2)
+    for i in range(at.size):
+        near = np.uint32(at[i])
+        turned = F(2.0) * (F(1.0) - cos[i] * pc[near] - sin[i] * ps[near])
+        away = apart[i] - per_turn * turned
+        against = max(F(0.0), -forward[i] * direction[near])
+        cost = weights.align * away + weights.heading * turned
+        costs[i] += (cost + weights.reverse * against) * step_s
+
+
+@kernel(nogil=True, fastmath=True)
+def _remaining_costs(
+    pose: Array32, path: PathTable, at: Indices, weight: np.float32, costs: Array32
+) -> None:
+    """Add the cost of the path that is left at the end of the rollout."""
+    px, py, measure = path.poses[0], path.poses[1], path.poses[4]
+    end = measure[-1]
+    for i in range(at.size):
+        near = np.uint32(at[i])
+        dx, dy = pose[_X, i] - px[near], pose[_Y, i] - py[near]
+        ahead = end - measure[near] + np.float32(0.5) * math.sqrt(dx * dx + dy * dy)
+        costs[i] += weight * ahead

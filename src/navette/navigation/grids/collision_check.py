@@ -5,6 +5,7 @@ The clearance is exact at each predicted pose; see
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -68,24 +69,28 @@ class CollisionCheck:
         stop = speed * (body.reaction_s + speed / (2 * body.deceleration_mps2))
         return self._radius + stop + self._horizon + _STEP_M + speed * _COSTMAP_AGE_S
 
-    def check(self, pose: Pose2, motion: tuple[float, float]) -> Verdict:
-        """Return the share of ``motion`` (m/s, rad/s) that is safe at ``pose`` (map).
+    def check(self, pose: Pose2, motion: Sequence[float]) -> Verdict:
+        """Return the share of ``motion`` that is safe at ``pose`` (map).
+
+        ``motion`` is the speed (m/s), the turn rate (rad/s) and, for a drive that moves
+        sideways, the speed to the left.
 
         The robot keeps the command for the reaction time t_r and then brakes on the
         same arc. Scaled by k, this takes ``k t_r + k² t_b / 2`` seconds of the full
         motion, where t_b is the braking time from full; solved for k with the part
         of the arc that is free.
         """
-        v, omega = motion
+        v, omega = motion[:2]
+        side = motion[2] if len(motion) > 2 else 0.0
         body = self._body
         brake = max(
-            abs(v) / body.deceleration_mps2,
+            math.hypot(v, side) / body.deceleration_mps2,
             abs(omega) / body.turn_acceleration_radps2,
         )
         if brake == 0.0:
             return Verdict(1.0, self.clearance(pose))
         needed = body.reaction_s + brake / 2
-        free, clearance = self._free(pose, v, omega, needed)
+        free, clearance = self._free(pose, v, omega, needed, side)
         if free >= needed:
             return Verdict(1.0, clearance)
         root = math.sqrt(body.reaction_s**2 + 2 * brake * free)
@@ -105,14 +110,14 @@ class CollisionCheck:
         return self._free(pose, 0.0, 0.0, 0.0)[1]
 
     def _free(
-        self, pose: Pose2, v: float, omega: float, duration: float
+        self, pose: Pose2, v: float, omega: float, duration: float, side: float = 0.0
     ) -> tuple[float, float]:
-        travel = (abs(v) + abs(omega) * self._radius) * duration
+        travel = (math.hypot(v, side) + abs(omega) * self._radius) * duration
         poses = min(_MAX_POSES, math.ceil(travel / _STEP_M))
         return free_motion(
             self._points,
             self._outline,
-            np.array((pose.x, pose.y, pose.yaw, v, omega, duration)),
+            np.array((pose.x, pose.y, pose.yaw, v, omega, side, duration)),
             poses,
             np.array(
                 (
@@ -137,14 +142,14 @@ def free_motion(
     Args:
         points: obstacles (N, 2), metres, map.
         outline: polygon (K, 2), metres, base.
-        motion: x, y, yaw (map), v, ω and duration (s) of the motion.
+        motion: x, y, yaw (map), v, ω, speed to the left, and duration (s).
         poses: number of poses to predict over the duration.
         body: circumscribed radius, half a cell, margin, horizon; metres.
 
     Returns:
         Seconds of free motion, and the present clearance (m, ≤ horizon).
     """
-    x, y, yaw, v, omega, duration = motion
+    x, y, yaw, v, omega, side, duration = motion
     radius, half_cell, margin, horizon = body
     reach = radius + half_cell
     far = half_cell + horizon
@@ -158,9 +163,9 @@ def free_motion(
         turned = omega * t
         half = turned / 2
         # Chord of the arc: v t · sin(θ/2)/(θ/2), in the direction of half the turn.
-        chord = v * t * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
-        px = x + chord * math.cos(yaw + half)
-        py = y + chord * math.sin(yaw + half)
+        chord = t * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
+        cos, sin = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
+        px, py = x + v * cos - side * sin, y + v * sin + side * cos
         near = half_cell + least + _SLACK_M
         there = body_distance(points, outline, px, py, yaw + turned, reach, near)
         if there - half_cell < least:

@@ -51,6 +51,7 @@ class PoseTracker:
         self._history_ns = round(history_s * 1e9)
         self._history: deque[tuple[int, Pose2]] = deque()
         self._velocity = (0.0, 0.0)
+        self._side_speed = 0.0
         # Received only if odometry needs moving transforms.
         self._on_invalid = node.drop_input if isinstance(node, StageNode) else None
         self._listener = TransformListener(
@@ -75,6 +76,11 @@ class PoseTracker:
         """Forward speed of the base (m/s) and turn rate (rad/s)."""
         return self._velocity
 
+    @property
+    def side_speed(self) -> float:
+        """Speed of the base to the left (m/s)."""
+        return self._side_speed
+
     def update(self, odometry: Odometry) -> bool:
         """Use a message; return False if it is unusable, and log the reason."""
         child_T_base = self._base_in(odometry.child_frame_id)
@@ -91,7 +97,7 @@ class PoseTracker:
             return False
         self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
         twist = odometry.twist.twist
-        self._velocity = _velocity_of_base(
+        self._velocity, self._side_speed = _velocity_of_base(
             twist.linear.x, twist.linear.y, twist.angular.z, child_T_base
         )
         return True
@@ -121,7 +127,7 @@ class PoseTracker:
         if stamp_ns <= latest_ns:
             return self.pose_at(stamp_ns)
         seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
-        return advanced(newest, *self._velocity, seconds)
+        return advanced(newest, *self._velocity, seconds, side=self._side_speed)
 
     def predicted_now(self, now_ns: int) -> Pose2 | None:
         """Return map_T_base now, or that of odometry stamped ahead of the clock."""
@@ -163,6 +169,7 @@ class PoseTracker:
         """Delete the history: a new run, or a jump backward in time."""
         self._history.clear()
         self._velocity = (0.0, 0.0)
+        self._side_speed = 0.0
 
     def _store(self, stamp_ns: int, map_T_base: Pose2) -> None:
         history = self._history
@@ -234,11 +241,12 @@ def _is_near(pose: Pose2) -> bool:
 
 def _velocity_of_base(
     vx: float, vy: float, omega: float, child_T_base: Pose2
-) -> tuple[float, float]:
-    """Return forward speed (m/s) and turn rate (rad/s) of the base.
+) -> tuple[tuple[float, float], float]:
+    """Return (forward speed, turn rate) and the speed to the left of the base.
 
     v_base = v_child + ω × p (rigid body), rotated into the base's axes.
     """
     x, y, yaw = child_T_base
     along, across = vx - omega * y, vy + omega * x
-    return math.cos(yaw) * along + math.sin(yaw) * across, omega
+    c, s = math.cos(yaw), math.sin(yaw)
+    return (c * along + s * across, omega), c * across - s * along

@@ -67,7 +67,7 @@ def test_the_robot_neither_overshoots_the_end_nor_creeps_to_it() -> None:
     assert max(p.x for p in result.poses) < 10.01
     slow = [v for v in result.speeds if v < 0.1]
     assert len(slow) * result.dt < 0.7
-    assert result.final.command == (0.0, 0.0)
+    assert result.final.command == STOP
 
 
 @pytest.mark.parametrize("turning", [0.75, 1.0])
@@ -254,7 +254,7 @@ def test_stale_inputs_stop_at_once_and_fresh_ones_continue(
     plant = Plant(Pose2(0, 0, 0))
     run(follower, plant, 2.0)
     output = follower.step(FollowerInputs(plant.pose, plant.speed, 0.0, ages), 0.05)
-    assert output.command == (0.0, 0.0)
+    assert output.command == STOP
     assert output.state == state
     assert run(follower, plant, 20.0).final.state == "reached"
 
@@ -267,14 +267,14 @@ def test_an_empty_path_and_a_reset_stop_at_once() -> None:
         assert run(follower, plant, 2.0).final.state == "following"
         forget()
         [output] = run(follower, plant, 0.5).outputs
-        assert (output.command, output.state) == ((0.0, 0.0), "idle")
+        assert (output.command, output.state) == (STOP, "idle")
 
 
 def test_far_from_its_path_the_robot_stops() -> None:
     follower = PathFollower(big_robot())
     follower.set_path(tangent_path(PATHS["straight"]))
     output = follower.step(FollowerInputs(Pose2(2.0, 3.0, 0.0), 0.0, 0.0), 0.05)
-    assert (output.command, output.state) == ((0.0, 0.0), "off_path")
+    assert (output.command, output.state) == (STOP, "off_path")
 
 
 def test_a_goal_passed_at_a_distance_is_missed() -> None:

@@ -39,7 +39,7 @@ def test_a_path_is_followed_to_its_end(name: str) -> None:
     omega = np.array([o.command.turn_rate for o in result.outputs])
     assert np.abs(np.diff(omega)).max() <= 0.1 + 1e-9
     assert np.diff(v).max() <= 0.05 + 1e-9
-    assert result.final.command == (0.0, 0.0)
+    assert result.final.command == STOP
 
 
 def test_a_path_in_reverse_is_driven_in_reverse() -> None:
