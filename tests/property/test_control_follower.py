@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.control import (
+    STOP,
     ControlParams,
     FollowerInputs,
     InputAges,

@@ -197,8 +197,7 @@ class CommandFollower:
         self._scale = scale = min(1.0, scale)
         if scale < _BLOCKED_SCALE:
             return self._emit(STOP, ControlState.BLOCKED)
-        scaled = VelocityCommand(command.speed * scale, command.turn_rate * scale)
-        return self._emit(scaled, ControlState.FOLLOWING)
+        return self._emit(command.scaled(scale), ControlState.FOLLOWING)
 
     def _advance(self, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""

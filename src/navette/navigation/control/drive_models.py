@@ -1,7 +1,7 @@
 """Compiled motion models of rollouts: commands to velocities, within the limits.
 
-Every model advances many samples by one step: ``state`` (4, n) has their velocities, and
-the other arrays (n,) their commands, which are limited in place. All are float32.
+Every model advances many samples by one step: ``state`` (4, n) has their velocities,
+and the other arrays (n,) their commands, which are limited in place; all float32.
 """
 
 import math
@@ -44,7 +44,7 @@ class DriveLimits(NamedTuple):
 @kernel(nogil=True, fastmath=True)
 def advance_differential(
     limits: DriveLimits,
-    step_s: np.float32,
+    step_s: float,
     speeds: Array32,
     turns: Array32,
     state: Array32,
@@ -66,7 +66,7 @@ def advance_differential(
 @kernel(nogil=True, fastmath=True)
 def advance_ackermann(
     limits: DriveLimits,
-    step_s: np.float32,
+    step_s: float,
     speeds: Array32,
     bends: Array32,
     state: Array32,
@@ -90,7 +90,7 @@ def advance_ackermann(
 @kernel(nogil=True, fastmath=True)
 def advance_omni(
     limits: DriveLimits,
-    step_s: np.float32,
+    step_s: float,
     speeds: Array32,
     sides: Array32,
     turns: Array32,
@@ -108,10 +108,10 @@ def advance_omni(
 def _ramp(
     wanted: Array32,
     state: Array32,
-    low: np.float32,
-    high: np.float32,
-    up: np.float32,
-    down: np.float32,
+    low: float,
+    high: float,
+    up: float,
+    down: float,
 ) -> None:
     """Change a speed by at most ``up`` when it grows and ``down`` when it falls."""
     for i in range(state.size):
@@ -124,9 +124,7 @@ def _ramp(
 
 
 @kernel(nogil=True, fastmath=True)
-def _approach(
-    wanted: Array32, state: Array32, most: np.float32, change: np.float32
-) -> None:
+def _approach(wanted: Array32, state: Array32, most: float, change: float) -> None:
     """Change a value within ± ``most`` by at most ``change``."""
     for i in range(state.size):
         before = state[i]

@@ -14,7 +14,7 @@ give equal commands. A command is speed and turn rate, speed and curvature (Acke
 or speed, speed to the left and turn rate (omnidirectional); see :mod:`.drive_models`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ from navette.navigation.control.rollouts import (
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]
 
+_STANDSTILL_MPS = 0.05
 # Sets of noise that are used in turns.
 _NOISE_SETS = 8
 # Share of the previous noise in the next step's: smooth candidates.
@@ -48,14 +49,13 @@ _MANOEUVRES = tuple(
     for v in (1.0, 0.6, 0.3, 0.0, -1.0)
     for w in (-1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0)
 )
-_SIDEWAYS = tuple((v, side) for v in (-0.5, 0.0, 0.5) for side in (-1.0, -0.4, 0.4, 1.0))
+_SIDEWAYS = tuple(
+    (v, side) for v in (-0.5, 0.0, 0.5) for side in (-1.0, -0.4, 0.4, 1.0)
+)
 
 
 class MotionState(NamedTuple):
-    """Pose in the map (m, rad), velocities of the base (m/s, rad/s), and steering.
-
-    ``side`` is the speed to the left, ``curvature`` (1/m) that of an Ackermann drive.
-    """
+    """Pose in the map (m, rad), speed (m/s), turn rate (rad/s), speed to the left."""
 
     x: float
     y: float
@@ -63,7 +63,6 @@ class MotionState(NamedTuple):
     speed: float
     turn_rate: float
     side: float = 0.0
-    curvature: float = 0.0
 
 
 class Mppi:
@@ -106,12 +105,13 @@ class Mppi:
         """Return the command for the next ``dt`` seconds."""
         self._shift(dt)
         candidates = self._draw_candidates()
-        motion = state.speed, state.side, state.turn_rate, state.curvature
+        step_s: Any = np.float32(self._step_s)
+        motion = state.speed, state.side, state.turn_rate, self._curvature(state)
         fastest = max(abs(state.speed) + abs(state.side), sum(self._most[:-1]))
         rollout_costs(
             candidates,
             np.array((state.yaw, *motion)),
-            np.float32(self._step_s),
+            step_s,
             self._drive,
             self._limits,
             PathTable.of(path, state.x, state.y, float(self._step_s * fastest)),
@@ -123,12 +123,21 @@ class Mppi:
         self._average(candidates)
         return self._first_command()
 
+    def _curvature(self, state: MotionState) -> float:
+        """Return the curvature (1/m) to which an Ackermann drive is steered."""
+        if self._drive != ACKERMANN:
+            return 0.0
+        if abs(state.speed) < _STANDSTILL_MPS:
+            return float(self._commands[0, 1])
+        most = float(self._limits.max_curvature)
+        return min(most, max(-most, state.turn_rate / state.speed))
+
     def _shift(self, dt: float) -> None:
         """Move the sequence by ``dt``, interpolating between its steps."""
         share = min(1.0, dt / self._step_s)
         self._commands[:-1] += share * (self._commands[1:] - self._commands[:-1])
 
-    def _draw_candidates(self) -> Array:
+    def _draw_candidates(self) -> Array32:
         """Return the candidates (T, D, K): noise about the sequence, and manoeuvres."""
         noise = self._noise[self._turn]
         self._turn = (self._turn + 1) % _NOISE_SETS
@@ -137,7 +146,7 @@ class Mppi:
         self._candidates[:, :, samples:] = self._fixed
         return self._candidates
 
-    def _average(self, candidates: Array) -> None:
+    def _average(self, candidates: Array32) -> None:
         costs = self._costs
         weight = np.exp((costs.min() - costs) / np.float32(self._temperature))
         weight /= weight.sum()
@@ -162,7 +171,7 @@ class Mppi:
             return limits.max_speed, limits.max_curvature
         return limits.max_speed, limits.max_turn_rate
 
-    def _draw(self, samples: int, steps: int, rng: np.random.Generator) -> Array:
+    def _draw(self, samples: int, steps: int, rng: np.random.Generator) -> Array32:
         """Return noise (sets, T, D, K), correlated over time; the first K is zero."""
         scale = np.array([_SPEED_NOISE * most for most in self._most])
         scale[-1] = _TURN_NOISE * self._most[-1]
@@ -203,7 +212,7 @@ def _weights(params: ControlParams) -> CostWeights:
         effort=params.mppi_effort_weight,
         margin_m=params.collision_margin_m,
     )
-    return CostWeights(*map(np.float32, values))
+    return CostWeights._make(map(np.float32, values))
 
 
 def _limits(params: ControlParams, cap: SpeedCap = NO_CAP) -> DriveLimits:
@@ -220,4 +229,4 @@ def _limits(params: ControlParams, cap: SpeedCap = NO_CAP) -> DriveLimits:
         curvature_rate=1.0 / (radius * params.steering_time_s) if radius else 0.0,
         max_side_speed=min(params.max_side_speed_mps, cap.forward),
     )
-    return DriveLimits(*map(np.float32, values))
+    return DriveLimits._make(map(np.float32, values))

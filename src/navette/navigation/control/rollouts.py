@@ -7,7 +7,7 @@ depend on the others.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,7 +133,7 @@ class RolloutBody(NamedTuple):
 def rollout_costs(
     commands: Array32,
     start: Array,
-    step_s: np.float32,
+    step_s: float,
     drive: int,
     limits: DriveLimits,
     path: PathTable,
@@ -170,7 +170,7 @@ def _chunk_costs(
     commands: Array32,
     first: int,
     start: Array,
-    step_s: np.float32,
+    step_s: float,
     drive: int,
     limits: DriveLimits,
     path: PathTable,
@@ -208,7 +208,7 @@ def _chunk_costs(
         found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
         if found > 0:
             _clearances(field, body, weights.clearance_m, near, cells, found)
-            earlier = np.float32((1.0 - 0.5 * t / steps) / steps)
+            earlier: Any = np.float32((1.0 - 0.5 * t / steps) / steps)
             _clearance_costs(near[4], found, index, weights, step_s, earlier, costs)
         _nearest(path, pose, from_, at, apart)
         _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
@@ -217,7 +217,7 @@ def _chunk_costs(
 
 @kernel(nogil=True, fastmath=True)
 def _effort_costs(
-    before: Array32, after: Array32, weight: np.float32, costs: Array32
+    before: Array32, after: Array32, weight: float, costs: Array32
 ) -> None:
     for i in range(costs.size):
         change = after[i] - before[i]
@@ -225,7 +225,7 @@ def _effort_costs(
 
 
 @kernel(nogil=True, fastmath=True)
-def _move(pose: Array32, speed: Array32, step_s: np.float32) -> None:
+def _move(pose: Array32, speed: Array32, step_s: float) -> None:
     """Drive a step, with the heading at half of it.
 
     Cosine and sine of half the turn are series, to 1e-6 below 0.5 rad.
@@ -249,7 +249,7 @@ def _near_obstacles(
     pose: Array32,
     field: LocalField,
     body: RolloutBody,
-    enough_m: np.float32,
+    enough_m: float,
     near: Array32,
     index: Indices,
 ) -> int:
@@ -283,7 +283,7 @@ def _near_obstacles(
 def _clearances(
     field: LocalField,
     body: RolloutBody,
-    enough_m: np.float32,
+    enough_m: float,
     near: Array32,
     cells: Indices,
     count: int,
@@ -316,7 +316,7 @@ def _cells_of_point(
 
 
 @kernel(nogil=True, fastmath=True)
-def _lower(flat: Array32, cells: Indices, less: np.float32, least: Array32) -> None:
+def _lower(flat: Array32, cells: Indices, less: float, least: Array32) -> None:
     for i in range(cells.size):
         there = flat[np.uint32(cells[i])] - less
         least[i] = min(least[i], there)
@@ -328,8 +328,8 @@ def _clearance_costs(
     count: int,
     index: Indices,
     weights: CostWeights,
-    step_s: np.float32,
-    earlier: np.float32,
+    step_s: float,
+    earlier: float,
     costs: Array32,
 ) -> None:
     F = np.float32
@@ -380,7 +380,7 @@ def _path_costs(
     at: Indices,
     apart: Array32,
     weights: CostWeights,
-    step_s: np.float32,
+    step_s: float,
     costs: Array32,
 ) -> None:
     """Add the costs of the distance from the path and of driving against it."""
@@ -399,7 +399,7 @@ def _path_costs(
 
 @kernel(nogil=True, fastmath=True)
 def _remaining_costs(
-    pose: Array32, path: PathTable, at: Indices, weight: np.float32, costs: Array32
+    pose: Array32, path: PathTable, at: Indices, weight: float, costs: Array32
 ) -> None:
     """Add the cost of the path that is left at the end of the rollout."""
     px, py, measure = path.poses[0], path.poses[1], path.poses[4]

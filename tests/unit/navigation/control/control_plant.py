@@ -80,7 +80,7 @@ def run(follower: Follower, plant: Plant, seconds: float, dt: float = 0.05) -> R
     while record.time_s < seconds:
         inputs = FollowerInputs(plant.pose, plant.speed, plant.turn_rate)
         output = follower.step(inputs, dt)
-        plant.drive(*output.command, dt)
+        plant.drive(output.command.speed, output.command.turn_rate, dt)
         record.outputs.append(output)
         record.poses.append(plant.pose)
         record.speeds.append(plant.speed)

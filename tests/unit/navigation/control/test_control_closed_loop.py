@@ -8,6 +8,7 @@ from control_plant import Plant, Run, big_robot, drive_path, run, tangent_path
 
 from navette.geometry import Pose2
 from navette.navigation.control import (
+    STOP,
     ControlParams,
     FollowerInputs,
     InputAges,

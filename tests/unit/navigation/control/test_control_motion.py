@@ -42,7 +42,7 @@ def test_clamping_keeps_the_arc() -> None:
 
 
 def test_no_wheel_turns_faster_than_it_can() -> None:
-    v, omega = clamp(VelocityCommand(1.0, 1.0), PARAMS)
+    v, omega, _ = clamp(VelocityCommand(1.0, 1.0), PARAMS)
     assert v + omega * 0.6 == pytest.approx(1.2)
     assert v == pytest.approx(omega)
 
@@ -65,9 +65,11 @@ def test_reversing_goes_through_standstill() -> None:
 
 def test_braking_stays_on_the_arc() -> None:
     braked = brake(VelocityCommand(0.8, 0.4), PARAMS, 0.1)
-    assert braked == pytest.approx((0.7, 0.35))
+    assert braked == pytest.approx((0.7, 0.35, 0.0))
     assert brake(VelocityCommand(0.05, 0.4), PARAMS, 0.1) == STOP
-    assert brake(VelocityCommand(0.0, -0.5), PARAMS, 0.1) == pytest.approx((0.0, -0.3))
+    assert brake(VelocityCommand(0.0, -0.5), PARAMS, 0.1) == pytest.approx(
+        (0.0, -0.3, 0.0)
+    )
 
 
 def test_the_turn_rate_law_brakes_in_time() -> None:

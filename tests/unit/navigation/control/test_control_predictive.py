@@ -8,7 +8,7 @@ from control_plant import Plant, big_robot, run, tangent_path
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.navigation.control.limits import SpeedCap
+from navette.navigation.control.limits import STOP, SpeedCap
 from navette.navigation.control.predictive_follower import (
     PredictiveFollower,
     local_field,
