@@ -3,11 +3,27 @@
 On the deterministic loop a callback runs to its end unless it waits (a nested spin, a
 coroutine's ``await``). While a callback waits, its group decides: a mutually exclusive
 group holds its other callbacks, a reentrant group lets them start. A callback that
-waits for a service or an action lets the group's servers run (decision 0021).
+waits for a service or an action lets the group's servers run (decision 0021). The
+groups of a MultiThreadedExecutor's nodes run their callbacks in its threads.
 """
 
 from collections import deque
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Protocol
+
+
+class Threads(Protocol):
+    """Threads that run the callbacks of groups."""
+
+    @property
+    def free_group(self) -> "ReentrantCallbackGroup":
+        """Group of the tasks without a group of their own."""
+
+    def start(self, entity: Any, rules: "CallbackGroup | None") -> None:
+        """Run an event whose group lets it start, by its own ``rules`` if any."""
+
+    def post(self, function: Callable[[], Any]) -> None:
+        """Run a function in the loop, between two events."""
 
 
 class CallbackGroup:
@@ -15,7 +31,8 @@ class CallbackGroup:
 
     Events are parked while ``held`` is above zero. A subclass that overrides
     :meth:`can_execute` or :meth:`beginning_execution` has its own rules: its groups
-    stay held (``floor``), and the loop calls the rules before each event.
+    stay held (``floor``), and the loop calls the rules before each event. Groups with
+    threads stay held too, so that other groups' events pay nothing for either.
     """
 
     #: Whether a waiting callback keeps the group's other callbacks from starting.
@@ -31,6 +48,7 @@ class CallbackGroup:
         "held",
         "parked",
         "ready",
+        "threads",
     )
 
     def __init_subclass__(cls) -> None:
@@ -47,6 +65,8 @@ class CallbackGroup:
         self.parked: deque[Any] = deque()
         #: The loop's queue; set when a node takes the group.
         self.ready: deque[Any] | None = None
+        #: Threads that run the callbacks; None: the thread that spins.
+        self.threads: Threads | None = None
         self._entities: list[Any] = []
 
     def add_entity(self, entity: Any) -> None:
@@ -74,8 +94,8 @@ class CallbackGroup:
 
     def blocks(self, entity: Any) -> bool:
         """Return whether an event must wait; called while the group is held."""
-        return self.held > self.floor or not (
-            self.has_rules and self.can_execute(entity)
+        return self.held > self.floor or (
+            self.has_rules and not self.can_execute(entity)
         )
 
     def retry_parked(self) -> None:
@@ -84,20 +104,39 @@ class CallbackGroup:
             self.ready.extendleft(reversed(self.parked))
             self.parked.clear()
 
+    def run_in(self, threads: Threads | None) -> None:
+        """Run the callbacks in these threads; None: in the thread that spins."""
+        step = (threads is not None) - (self.threads is not None)
+        self.threads = threads
+        self.floor += step
+        self.held += step
+
     def hold(self) -> None:
         """Park the group's events until the matching :meth:`release`."""
         self.held += 1
 
     def begin_call(self) -> None:
         """Let servers run despite the hold until :meth:`end_call`."""
+        if self.threads is None:
+            self._begin_call()
+        else:
+            self.threads.post(self._begin_call)
+
+    def end_call(self) -> None:
+        """Undo one :meth:`begin_call`."""
+        if self.threads is None:
+            self._end_call()
+        else:
+            self.threads.post(self._end_call)
+
+    def _begin_call(self) -> None:
         self.calling += 1
         servers = [entity for entity in self.parked if entity.runs_during_calls]
         if servers and self.ready is not None:
             self.ready.extendleft(reversed(servers))
             self.parked = deque(e for e in self.parked if not e.runs_during_calls)
 
-    def end_call(self) -> None:
-        """Undo one :meth:`begin_call`."""
+    def _end_call(self) -> None:
         self.calling -= 1
 
     def release(self) -> None:

@@ -1,14 +1,17 @@
-"""Executors: sets of nodes whose callbacks the context's deterministic loop runs.
+"""Executors: sets of nodes whose callbacks the context's event loop runs.
 
-All of rclpy's executor names are the same executor: callbacks run one after the other,
-in the order of (time, sequence), in the thread that spins.
+Callbacks run one after the other, in the order of (time, sequence), in the thread that
+spins. Only a MultiThreadedExecutor runs them in threads of its own, and not under a
+virtual clock, where runs are deterministic.
 """
 
+import os
 from collections.abc import Callable, Coroutine
 from functools import partial
 from typing import Any, Self
 
 from navette.errors import InvalidValueError
+from navette.runtime.callback_threads import CallbackThreads
 from navette.runtime.clock import ContextClock
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.events import Call, Entity
@@ -62,6 +65,11 @@ class Executor:
     @property
     def context(self) -> Context:
         return self._context
+
+    @property
+    def threads(self) -> CallbackThreads | None:
+        """The threads that run callbacks; None: the thread that spins."""
+        return None
 
     @property
     def loop(self) -> EventLoop:
@@ -257,9 +265,18 @@ class SingleThreadedExecutor(Executor):
 
 
 class MultiThreadedExecutor(Executor):
-    """The deterministic executor: callbacks run one at a time, without threads.
+    """Runs callbacks in threads, as their callback groups allow.
 
-    ``num_threads`` is accepted and ignored.
+    A callback that sleeps or waits does not delay those of other groups. Under a
+    virtual clock there are no threads: callbacks run one at a time in a fixed order,
+    and others run while one waits.
+
+    Args:
+        num_threads: number of threads; None: the number of processor cores, at least 2.
+        context, clock: as for :class:`Executor`.
+
+    Raises:
+        ValueError: ``num_threads`` is not positive.
     """
 
     def __init__(
@@ -270,12 +287,32 @@ class MultiThreadedExecutor(Executor):
         clock: ContextClock | None = None,
     ) -> None:
         super().__init__(context=context, clock=clock)
+        if num_threads is None:
+            num_threads = max(2, os.cpu_count() or 1)
+        self._threads = CallbackThreads(self.loop, num_threads)
+
+    @property
+    def threads(self) -> CallbackThreads | None:
+        return None if self.clock.is_virtual else self._threads
+
+    def create_task(
+        self,
+        callback: Callable[..., Any] | Coroutine[Any, Any, Any],
+        *args: Any,
+        **kwargs: Any,
+    ) -> Task[Any]:
+        if self.threads is None:
+            return super().create_task(callback, *args, **kwargs)
+        group = self._threads.free_group
+        return self.loop.create_task(callback, *args, step_group=group, **kwargs)
 
     def shutdown(
         self, timeout_sec: float | None = None, *, wait_for_threads: bool = True
     ) -> bool:
-        """Stop, and remove all nodes; there are no threads to wait for."""
-        return super().shutdown(timeout_sec)
+        """Stop, and remove all nodes; wait for the callbacks that are running."""
+        stopped = super().shutdown(timeout_sec)
+        self._threads.shutdown(wait=wait_for_threads)
+        return stopped
 
 
 class EventsExecutor(Executor):

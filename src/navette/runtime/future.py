@@ -14,7 +14,11 @@ class Scheduler(Protocol):
     """The part of the event loop that futures and tasks use."""
 
     def call_soon(
-        self, function: Callable[[], Any], source: str = "call", node: str = ""
+        self,
+        function: Callable[[], Any],
+        source: str = "call",
+        node: str = "",
+        group: CallbackGroup | None = None,
     ) -> object: ...
     def wake(self) -> None: ...
 
@@ -185,8 +189,11 @@ class Task(Future[T]):
         self._arguments = (args, kwargs or {})
         self._coroutine: Coroutine[Any, Any, T] | None = None
         self._executing = False
+        self._is_due = False  # for its next step, while another thread ends this one
         self.source = source
         self.node = node
+        #: The group whose threads run the steps; None: the thread that spins.
+        self.step_group: CallbackGroup | None = None
         #: The callback group that is held until the task ends; set by the loop.
         self.group: CallbackGroup | None = None
         # The group whose servers may run while the task awaits a response.
@@ -203,9 +210,11 @@ class Task(Future[T]):
     def __call__(self) -> None:
         """Run until the next ``await`` or the end."""
         self._end_call()
-        if self._done or self._executing:
-            return
-        self._executing = True
+        with self._lock:
+            if self._done or self._executing:
+                self._is_due = not self._done
+                return
+            self._executing = True
         try:
             self._step()
         except StopIteration as stop:
@@ -216,7 +225,11 @@ class Task(Future[T]):
             else:
                 self.on_error(error)
         finally:
-            self._executing = False
+            with self._lock:
+                self._executing = False
+                is_due, self._is_due = self._is_due, False
+            if is_due:
+                self._resume()
 
     def cancel(self) -> None:
         super().cancel()
@@ -260,4 +273,4 @@ class Task(Future[T]):
 
     def _resume(self, _: object = None) -> None:
         if self._loop is not None:
-            self._loop.call_soon(self, self.source, self.node)
+            self._loop.call_soon(self, self.source, self.node, self.step_group)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from navette.errors import CallbackError
 from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from navette.runtime.callback_threads import group_of_this_thread
 from navette.runtime.clock import ContextClock, Wakeup
 from navette.runtime.events import Call, Entity
 from navette.runtime.future import Task
@@ -61,10 +62,14 @@ class EventLoop:
         self._pending_execute = 0  # threads in execute() that wait for their turn
 
     def call_soon(
-        self, function: Callable[[], Any], source: str = "call", node: str = ""
+        self,
+        function: Callable[[], Any],
+        source: str = "call",
+        node: str = "",
+        group: CallbackGroup | None = None,
     ) -> Call:
         """Run ``function`` at the current time, after the events that are ready."""
-        call = Call(function, self.free_group, source, node)
+        call = Call(function, group or self.free_group, source, node)
         self.ready.append(call)
         if self.waiting:
             self._wakeup.set()
@@ -136,9 +141,13 @@ class EventLoop:
         *args: Any,
         source: str = "task",
         node: str = "",
+        step_group: CallbackGroup | None = None,
         **kwargs: Any,
     ) -> Task[Any]:
-        """Run a function or coroutine on this loop; the task gets its result."""
+        """Run a function or coroutine on this loop; the task gets its result.
+
+        With a ``step_group`` that has threads, the steps of the task run in them.
+        """
         task: Task[Any] = Task(
             handler, args, kwargs, loop=self, source=source, node=node
         )
@@ -150,7 +159,8 @@ class EventLoop:
                 raise error
 
         task.on_error = fail
-        self.call_soon(task, source, node)
+        task.step_group = step_group
+        self.call_soon(task, source, node, step_group)
         return task
 
     def close(self) -> None:
@@ -207,6 +217,19 @@ class EventLoop:
         if self.in_driver_thread:
             self._run_nested(end, calling=calling)
             return
+        waiting = group_of_this_thread() if calling else None
+        if waiting is None:
+            self._run_in_turn(end)
+            return
+        waiting.begin_call()
+        try:
+            self._run_in_turn(end)
+        finally:
+            waiting.end_call()
+
+    def _run_in_turn(self, end: _RunEnd) -> None:
+        """Drive the loop, or wait for ``end`` while another thread does."""
+        until_ns, done, _, stop = end
         while not self._closed and not (done is not None and done()):
             if self._take_turn():
                 try:
@@ -454,7 +477,11 @@ class EventLoop:
                 if group.blocks(entity) or not group.beginning_execution(entity):
                     self._park(entity)
                     continue
-                rules = group
+                rules = group if group.has_rules else None
+                if group.threads is not None:
+                    group.threads.start(entity, rules)
+                    count += 1
+                    continue
             self._running = entity
             count += 1
             try:

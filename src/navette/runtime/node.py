@@ -238,7 +238,7 @@ class Node(GraphQueries, NodeParameters):
     def attach(self, executor: Any) -> None:
         """Let callbacks run; called by the executor that the node is added to."""
         self._executor = executor
-        self._node_entities.release()
+        self._node_entities.release(executor.threads)
 
     def detach(self) -> None:
         """Hold callbacks; called by the executor that the node is removed from."""

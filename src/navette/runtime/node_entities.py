@@ -7,6 +7,7 @@ from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
+    Threads,
 )
 from navette.runtime.context import Context
 from navette.runtime.names import NodeRemapper, full_node_name
@@ -32,6 +33,7 @@ class NodeEntities:
         self._entities: list[Any] = []
         self._groups: list[CallbackGroup] = []
         self._is_held = True
+        self._threads: Threads | None = None
         self.default_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.adopt(self.default_group)
 
@@ -42,21 +44,26 @@ class NodeEntities:
         if group not in self._groups:
             self._groups.append(group)
             group.ready = self.context.loop.ready
+            group.run_in(self._threads)
             if self._is_held:
                 group.hold()
         return group
 
-    def release(self) -> None:
-        """Let callbacks run."""
+    def release(self, threads: Threads | None) -> None:
+        """Let callbacks run, in the threads or in the thread that spins."""
         self._is_held = False
+        self._threads = threads
         for group in self._groups:
+            group.run_in(threads)
             group.release()
 
     def hold(self) -> None:
         """Park the events of all callback groups."""
         self._is_held = True
+        self._threads = None
         for group in self._groups:
             group.hold()
+            group.run_in(None)
 
     def add(self, entity: Any) -> None:
         self._entities.append(entity)

@@ -24,15 +24,17 @@ class Rate:
         """Return at the end of the period, or immediately if that has passed.
 
         Raises:
-            ROSInterruptException: the context was shut down.
+            ROSInterruptException: the context was shut down or the rate destroyed.
         """
         if not self._context.ok() or self._destroyed:
             raise ROSInterruptException
         now = self._clock.now_ns
         if self._next_ns > now + self._period_ns:  # the clock was set back
             self._next_ns = now + self._period_ns
-        self._clock.sleep_until_ns(self._next_ns, self._context)
-        if not self._context.ok():
+        self._clock.sleep_until_ns(
+            self._next_ns, self._context, lambda: self._destroyed
+        )
+        if not self._context.ok() or self._destroyed:
             raise ROSInterruptException
         now = self._clock.now_ns
         # Skip missed periods and keep the phase.
@@ -41,4 +43,5 @@ class Rate:
 
     def destroy(self) -> None:
         self._destroyed = True
+        self._context.loop.wake()  # another thread may be sleeping
         self._entities.forget(self)

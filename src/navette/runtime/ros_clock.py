@@ -169,14 +169,34 @@ class Clock:
         until_ns = self.now_ns + rel_time.nanoseconds
         return self.sleep_until_ns(until_ns, context or self._context)
 
-    def sleep_until_ns(self, until_ns: int, context: Context) -> bool:
+    def sleep_until_ns(
+        self,
+        until_ns: int,
+        context: Context,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> bool:
+        """Run the context's events until the time, or until ``interrupted`` holds."""
         if not context.ok():
             raise NotInitializedException("cannot sleep without a valid context")
-        alarm = Call(context.loop.wake, context.loop.free_group, "sleep", "")
-        alarm.token = self.schedule(until_ns, alarm)
-        context.loop.run(done=lambda: self.now_ns >= until_ns)
-        alarm.token = -1
+
+        def done() -> bool:
+            return self.now_ns >= until_ns or interrupted()
+
+        if context.loop is not self._loop and not self._is_overridden:
+            # The clock's own loop, which would ring the alarm, may not be running.
+            left_ns = until_ns - self.now_ns
+            context.loop.run(until_ns=context.clock.now_ns + left_ns, done=done)
+        else:
+            alarm = Call(context.loop.wake, context.loop.free_group, "sleep", "")
+            alarm.token = self.schedule(until_ns, alarm)
+            context.loop.run(done=done)
+            alarm.token = -1
         return context.ok() and self.now_ns >= until_ns
+
+    @property
+    def _is_overridden(self) -> bool:
+        """Whether the time comes from ``/clock``."""
+        return False
 
 
 class ROSClock(Clock):
@@ -196,6 +216,10 @@ class ROSClock(Clock):
     @property
     def ros_time_is_active(self) -> bool:
         """Whether simulated time overrides the context's time."""
+        return self._override_ns is not None
+
+    @property
+    def _is_overridden(self) -> bool:
         return self._override_ns is not None
 
     @property

@@ -73,9 +73,10 @@ class Service(ServiceEndpoint, Entity):
 
     def run(self) -> Any:
         """Process the oldest queued request."""
-        if not self._queue:  # destroyed while the event was queued
+        try:
+            request = self._queue.popleft()
+        except IndexError:  # destroyed while the event was queued
             return None
-        request = self._queue.popleft()
         self._events.report(
             ServiceEventInfo.REQUEST_RECEIVED, request.id, request=request.message
         )

@@ -205,18 +205,19 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
 
     def run(self) -> Any:
         """Run the callback with the oldest queued sample."""
-        queue = self._queue
-        if not queue:  # destroyed while the event was queued, or a surplus event
+        try:
+            item = self._queue.popleft()
+        except IndexError:  # destroyed while the event was queued, or a surplus event
             return None
         if self._plain:
-            message = queue.popleft()[0]
+            message = item[0]
             kind = message.__class__
             if kind is Encoded or kind is Expiring:
                 message = self._unwrapped(message)
                 if message is None:
                     return None
             return self._callback(message)
-        return self._run_with_info(queue.popleft())
+        return self._run_with_info(item)
 
     def take(self) -> MsgT | None:
         """Remove and return the oldest queued sample; None if the queue is empty."""

@@ -41,6 +41,7 @@ class Timer(Destroyable, Entity):
         "_callback",
         "_clock",
         "_entities",
+        "_is_virtual",
         "_jump_handle",
         "_last_ns",
         "_next_ns",
@@ -64,7 +65,8 @@ class Timer(Destroyable, Entity):
         self.group = callback_group
         self._clock = clock
         self._entities = entities
-        self._period_ns = _checked_period(timer_period_ns)
+        self._is_virtual = entities.context.clock.is_virtual
+        self._period_ns = self._checked(timer_period_ns)
         self._last_ns = clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
         self.token = -1
@@ -90,7 +92,7 @@ class Timer(Destroyable, Entity):
     @timer_period_ns.setter
     def timer_period_ns(self, value: int) -> None:
         """Set the period from the next call on (:meth:`reset` applies it now)."""
-        self._period_ns = _checked_period(int(value))
+        self._period_ns = self._checked(int(value))
 
     @property
     def callback(self) -> Callable[..., Any] | None:
@@ -147,7 +149,9 @@ class Timer(Destroyable, Entity):
         expected = self._next_ns
         self._last_ns = now
         self._next_ns = expected + self._period_ns
-        if self._next_ns <= now:  # late: skip missed periods, keep the phase
+        if self._period_ns == 0:
+            self._next_ns = now
+        elif self._next_ns <= now:  # late: skip missed periods, keep the phase
             missed = (now - self._next_ns) // self._period_ns + 1
             self._next_ns += missed * self._period_ns
         # Scheduled before the callback, so that events which the callback schedules
@@ -184,11 +188,10 @@ class Timer(Destroyable, Entity):
             self._next_ns = now + self._period_ns
             self._arm()
 
-
-def _checked_period(period_ns: int) -> int:
-    # With a period of zero, virtual time would never advance.
-    if period_ns <= 0:
-        raise InvalidValueError(
-            f"timer period must be > 0 s, got {period_ns / 1e9:g} s"
-        )
-    return period_ns
+    def _checked(self, period_ns: int) -> int:
+        if period_ns < 0 or (period_ns == 0 and self._is_virtual):
+            reason = " (virtual time would not advance)" if period_ns == 0 else ""
+            raise InvalidValueError(
+                f"timer period must be > 0 s, got {period_ns / 1e9:g} s{reason}"
+            )
+        return period_ns

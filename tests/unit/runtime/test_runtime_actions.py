@@ -274,20 +274,21 @@ def test_a_goal_without_a_terminal_state_is_aborted(make: Make) -> None:
     assert list(response.result.sequence) == [1]
 
 
-def test_an_exception_is_raised_and_the_client_gets_a_failure(make: Make) -> None:
-    def fail(goal: Any) -> Any:
-        raise ValueError("motor gone")
+def test_an_exception_aborts_the_goal_and_the_server_goes_on(
+    make: Make, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def execute(goal: Any) -> Any:
+        if goal.request.order == 0:
+            raise ValueError("motor gone")
+        goal.succeed()
+        return Fibonacci.Result()
 
-    pair = make(fail)
-    result: list[Any] = []
-    sent = pair.client.send_goal_async(Fibonacci.Goal())
-    sent.add_done_callback(
-        lambda f: f.result().get_result_async().add_done_callback(result.append)
-    )
-    with pytest.raises(CallbackError, match=r"/server: .* action /fib .*motor gone"):
-        pair.graph.run_for(1.0)
-    pair.graph.run_for(1.0)
-    assert result[0].result().status == S.STATUS_ABORTED
+    pair = make(execute)
+    assert pair.send(order=0).get_result().status == S.STATUS_ABORTED
+    shown = capsys.readouterr().err
+    assert "[server.action_server]: error in the execute callback" in shown
+    assert "motor gone" in shown
+    assert pair.send(order=3).get_result().status == S.STATUS_SUCCEEDED
 
 
 def test_a_result_of_the_wrong_type_raises(make: Make) -> None:

@@ -1,10 +1,11 @@
-"""``time.sleep`` and ``Event.wait`` in callbacks of a MultiThreadedExecutor.
+"""``time.sleep`` and ``Event.wait`` in virtual time, under a MultiThreadedExecutor.
 
-In ROS 2 the executor's other threads run callbacks meanwhile, and programs depend on
-it: an action's execute callback sleeps and can still be cancelled; a callback calls a
-service and waits for a ``threading.Event`` that the response sets. Navette runs all
-callbacks in one thread. While a callback waits, the loop runs inside the call and holds
-back the callback's group (for an event except for servers, as in a blocking call).
+The executor's threads run other callbacks while one sleeps or waits, and programs
+depend on it: an action's execute callback sleeps and can still be cancelled; a callback
+calls a service and waits for a ``threading.Event`` that the response sets. In virtual
+time all callbacks run in one thread (decision 0034). While a callback waits there, the
+loop runs inside the call and holds back the callback's group (for an event except for
+servers, as in a blocking call).
 """
 
 import sys

@@ -1,5 +1,6 @@
 """Action servers: three services, two topics, and the state of the goals."""
 
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -186,7 +187,13 @@ class ActionServer(Waitable[Any]):
             goal_handle,
             source=f"action {self.action_name}",
             node=self._node.get_fully_qualified_name(),
+            step_group=self._step_group(),
         )
+
+    def _step_group(self) -> CallbackGroup | None:
+        """Return the group whose threads execute goals, beside those of the group."""
+        threads = self.callback_group.threads
+        return None if threads is None else threads.free_group
 
     def notify_goal_done(self, goal_handle: ServerGoalHandle) -> None:
         """Schedule the removal of the goal and its result."""
@@ -277,14 +284,24 @@ class ActionServer(Waitable[Any]):
     ) -> None:
         try:
             result = await await_or_execute(callback, goal)
+        except Exception as error:
+            # As in rclpy: the goal ends, and the server serves the next one.
+            shown = "".join(traceback.format_exception(error))
+            self._logger.error(f"error in the execute callback: {error!r}\n{shown}")
+            self._end_without_result(goal)
+            return
+        try:
             if result is not None or not goal.result.done():
                 self._finish(goal, result)
-        except Exception:
+        except MessageError:
             # Re-raised after the client got a result: it must not wait indefinitely.
-            if goal.is_active:
-                goal.abort()
-            self.set_result(goal, self._action_type.Result())
+            self._end_without_result(goal)
             raise
+
+    def _end_without_result(self, goal: ServerGoalHandle) -> None:
+        if goal.is_active:
+            goal.abort()
+        self.set_result(goal, self._action_type.Result())
 
     def _finish(self, goal: ServerGoalHandle, result: Any) -> None:
         if goal.is_active:

@@ -302,7 +302,7 @@ def call():
 
 rclpy.init()
 node, other = rclpy.create_node("n"), rclpy.create_node("m")
-node.create_service(Trigger, "answer", answer)
+other.create_service(Trigger, "answer", answer)
 client = node.create_client(Trigger, "answer")
 timer = node.create_timer(0.01, call)
 executor = MultiThreadedExecutor()
