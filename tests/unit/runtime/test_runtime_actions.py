@@ -274,7 +274,7 @@ def test_a_goal_without_a_terminal_state_is_aborted(make: Make) -> None:
     assert list(response.result.sequence) == [1]
 
 
-def test_an_exception_aborts_the_goal_and_the_server_goes_on(
+def test_an_exception_aborts_the_goal_and_the_server_continues(
     make: Make, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def execute(goal: Any) -> Any:
