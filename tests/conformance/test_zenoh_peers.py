@@ -78,7 +78,9 @@ class Meeting:
         until(look, what)
 
 
-@pytest.fixture(params=list(PROGRAMS))
+@pytest.fixture(
+    params=["zenoh-ros2-sdk", pytest.param("pyzeros", marks=pytest.mark.long)]
+)
 def meeting(
     request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Meeting]:

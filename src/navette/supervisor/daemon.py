@@ -90,7 +90,11 @@ class _Daemon:
         assert guard is not None, "supervisors run on POSIX systems only"
         info = {"pid": os.getpid(), "folder": str(folder), "token": guard.token}
         self._info = state / INFO_NAME
-        self._info.write_text(json.dumps(info), encoding="utf-8")
+        try:
+            self._info.write_text(json.dumps(info), encoding="utf-8")
+        except OSError as error:  # a full disk: the services start, and `ps` reports it
+            text = f"{self._info}: {error.strerror}"
+            self._log.write("supervisor", "supervisor", [text], event=True)
 
     def run(self) -> None:
         self._install_signal_handlers()
