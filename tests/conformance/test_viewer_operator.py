@@ -7,7 +7,7 @@ import pytest
 from test_viewer_javascript import run_node
 from viewer_harness import Program
 
-from navette.msgs.geometry_msgs.msg import PointStamped, Twist, Vector3
+from navette.msgs.geometry_msgs.msg import Point, PointStamped, Twist, Vector3
 from navette.msgs.std_msgs.msg import Empty
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.runtime import Context, Node
@@ -28,8 +28,16 @@ class Robot(Node):
         self.create_subscription(Empty, "/cancel_goal", self.on_cancel, 10)
         self.create_subscription(PointStamped, "/goal_point", lambda goal: None, 10)
         navigation = self.create_publisher(Twist, "/cmd_vel_nav", 10)
+        self._goals = self.create_publisher(PointStamped, "/goal_point", 10)
+        self._goal_timer = self.create_timer(0.5, self.send_goal)
         ahead = Twist(linear=Vector3(x=0.3))
         self.create_timer(0.05, lambda: navigation.publish(ahead))
+
+    def send_goal(self) -> None:
+        """Send one goal, once the page receives goals."""
+        if self._goals.get_subscription_count() > 1:
+            self._goal_timer.cancel()
+            self._goals.publish(PointStamped(point=Point(x=2.0, y=3.0)))
 
     def on_command(self, msg: Twist) -> None:
         self.commands.append(
@@ -61,6 +69,8 @@ def test_the_operator_at_the_page(program: Program) -> None:
     width, height, is_visible = seen["stop"]
     assert is_visible
     assert min(width, height) >= 48  # for a thumb
+    assert max(seen["covered"]) <= 0
+    assert seen["wide"] <= 360
     assert seen["operator"] == "Operator (viewer)"
     assert seen["headline"] == "Operator (viewer) commands"
     turns = {"ArrowLeft": 0.8, "ArrowRight": -0.8}

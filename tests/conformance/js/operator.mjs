@@ -13,7 +13,7 @@ const browser = await chromium.launch({
 });
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 try {
-  const page = await browser.newPage({ viewport: { width: 390, height: 800 } }); // a phone
+  const page = await browser.newPage({ viewport: { width: 360, height: 800 } }); // a phone
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
   await page.addInitScript(() => {
@@ -28,6 +28,13 @@ try {
   await shows("Navigation");
   const box = await page.locator("#stop").boundingBox();
   const seen = { problems, stop: [Math.round(box.width), Math.round(box.height), box.y + box.height <= 800] };
+  // No part of the page is below the buttons, however it is scrolled.
+  seen.covered = await page.evaluate(() => {
+    const main = document.querySelector("main"), top = document.querySelector("#operate").getBoundingClientRect().top;
+    return [0, 300, 1e6].map((at) => { main.scrollTop = at; return main.getBoundingClientRect().bottom - top; });
+  });
+  seen.wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  await page.evaluate(() => { document.querySelector("main").scrollTop = 0; });
 
   // Each press is a takeover or a change of direction.
   for (let number = 0; number < Number(tries); number++) {
@@ -66,8 +73,10 @@ try {
   await shows("Emergency stop");
   await page.click("#release");
   await shows("Navigation");
+  await until(() => document.querySelector("#goal").textContent.startsWith("2.0, 3.0"));
   await page.click("#cancel");
   seen.cancelled = await page.textContent("#answer");
+  await until(() => document.querySelector("#goal").textContent === "–");
   // Space in a text field is a space.
   await page.fill("#x", "1");
   await page.press("#x", "Space");

@@ -17,6 +17,7 @@ const mission = {
   leave() { this.goal = this.sent = null; this.contacts = 0; this.parts.card.hidden = true; },
   /** geometry_msgs PointStamped or PoseStamped: both begin with header, x, y. */
   readGoal(reader) { reader.header(); this.goal = [reader.f64(), reader.f64()]; },
+  cancel() { this.goal = this.sent = null; },
   readContacts({ values }) { this.contacts = Number(values.count) || this.contacts + 1; },
   readTree(reader) {
     this.parts.card.hidden = false;
@@ -34,6 +35,7 @@ const mission = {
   },
   /** The planner's goal, else that of the topics: a planner of the user has no status. */
   shown(planner) {
+    if (planner?.message === "canceled") return this.sent;  // the next one, if any
     const own = [parseFloat(planner?.values.goal_x), parseFloat(planner?.values.goal_y)];
     return own.every(Number.isFinite) ? own : this.goal;
   },
