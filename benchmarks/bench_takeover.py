@@ -138,16 +138,15 @@ def planning(tries: int) -> None:
             goal.goal.pose.position.x = goal.goal.pose.position.y = 45.0
             goal.goal.pose.orientation.w = 1.0
             begun = time.perf_counter()
-            answer = client.send_goal_async(goal)
-            answer.add_done_callback(
-                lambda _: (
-                    answer.result()
-                    .get_result_async()
-                    .add_done_callback(
-                        lambda _: held_ms.append((time.perf_counter() - begun) * 1e3)
-                    )
-                )
-            )
+
+            def accepted(answer: Any) -> None:
+                if answer.result() is not None:  # it is at the end of the program
+                    answer.result().get_result_async().add_done_callback(done)
+
+            def done(_: object) -> None:
+                held_ms.append((time.perf_counter() - begun) * 1e3)
+
+            client.send_goal_async(goal).add_done_callback(accepted)
 
         run.executor.call_soon_threadsafe(
             lambda: maps.publish(grid_to_message(cells, spec, "map", 0))

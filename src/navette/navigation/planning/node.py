@@ -22,7 +22,7 @@ from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.std_msgs.msg import Empty, Header
 from navette.msgs.std_srvs.srv import (
     Trigger,
@@ -33,7 +33,6 @@ from navette.navigation.grids import GridSpec, grid_from_message
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
@@ -410,13 +409,12 @@ class PlannerNode(StageNode):
             self.publish(topics.PATH.name, message)
             self._path_ns = self._now_ns
             if len(poses):
-                self._publish_plan(poses)
+                self._publish_plan(message)
         self._report()
 
-    def _publish_plan(self, poses: Poses) -> None:
+    def _publish_plan(self, path: Path) -> None:
         if self.has_listeners(topics.PLAN.name):
-            message = path_message(poses, self.params.map_frame, self._now_ns)
-            self.publish(topics.PLAN.name, message)
+            self.publish(topics.PLAN.name, path)
 
     def _report(self) -> None:
         report = self._navigator.report

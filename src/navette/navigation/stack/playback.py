@@ -46,6 +46,8 @@ class BagPlayback:
         context: Context | None = None,
     ) -> None:
         self._stack = ExitStack()
+        #: What could not be played, so far.
+        self.losses: list[str] = []
         with ExitStack() as opening:
             opening.callback(self.close)
             self.source = self._open(paths)
@@ -92,7 +94,8 @@ class BagPlayback:
             reader = self._stack.enter_context(open_bag(path))
             for problem in reader.problems:
                 _log.warning("%s", problem)
-            sources.append(TolerantSource(reader, _report))
+            self.losses += [f"{path}: {each}" for each in reader.losses]
+            sources.append(TolerantSource(reader, self._report))
         return sources[0] if len(sources) == 1 else MergedSource(sources)
 
     def _join(self) -> Context:
@@ -113,6 +116,10 @@ class BagPlayback:
         self._stack.callback(viewer.close)
         self.executor.add_node(viewer)
         return viewer.url
+
+    def _report(self, damage: Damage) -> None:
+        _log.warning("left out: %s", damage)
+        self.losses.append(str(damage))
 
     def _on_end(self) -> None:
         if self.url is None:
@@ -149,7 +156,3 @@ _STATUS = {
     PlayState.PAUSED: PlaybackStatus.PAUSED,
     PlayState.ENDED: PlaybackStatus.ENDED,
 }
-
-
-def _report(damage: Damage) -> None:
-    _log.warning("left out: %s", damage)

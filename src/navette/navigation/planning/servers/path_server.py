@@ -57,7 +57,7 @@ class PlanningContext:
         planner: planner on the newest map; None before the first.
         robot: pose of the robot; None if unknown or stale.
         frame_on_map: pose of a frame in the map frame; None if unknown.
-        publish_plan: publishes a planned path (N, 3), map.
+        publish_plan: publishes a planned path.
         worker: computes paths.
     """
 
@@ -65,7 +65,7 @@ class PlanningContext:
     planner: Callable[[], Planner | None]
     robot: Callable[[], Pose2 | None]
     frame_on_map: Callable[[str], Pose2 | None]
-    publish_plan: Callable[[Poses], None]
+    publish_plan: Callable[[Path], None]
     worker: Worker
 
     def path(self, msg: Path) -> Poses | None:
@@ -141,17 +141,23 @@ class PathServer:
         timer = Stopwatch()
         active = server.goal
 
-        def finish(route: PlannedRoute) -> None:
+        map_frame = self._context.params().map_frame
+        now_ns = self._node.get_clock().now().nanoseconds
+
+        def compute() -> tuple[PlannedRoute, Path]:
+            route = plan_through(*request)
+            return route, path_message(route.poses, map_frame, now_ns)
+
+        def finish(computed: tuple[PlannedRoute, Path]) -> None:
+            route, path = computed
             try:
-                poses = _checked(route, request)
+                _check(route, request)
             except _RequestError as error:
                 server.end(self._refused(result, error))
                 return
-            map_frame = self._context.params().map_frame
-            now_ns = self._node.get_clock().now().nanoseconds
-            result.path = path_message(poses, map_frame, now_ns)
+            result.path = path
             result.planning_time = Duration(seconds=timer.elapsed_s).to_msg()
-            self._context.publish_plan(poses)
+            self._context.publish_plan(path)
             server.end(result)
 
         try:
@@ -160,7 +166,7 @@ class PathServer:
             server.end(self._refused(result, error))
             return
         self._context.worker.run(
-            lambda: plan_through(*request),
+            compute,
             finish,
             is_dropped=lambda: server.goal is not active,
         )
@@ -226,14 +232,10 @@ class PathServer:
         return response
 
 
-def _checked(route: PlannedRoute, request: _PathRequest) -> Poses:
-    """Return the poses of a route.
-
-    Raises:
-        _RequestError: it has none.
-    """
+def _check(route: PlannedRoute, request: _PathRequest) -> None:
+    """Raise the error of a route without poses."""
     if route.outcome.has_path:
-        return route.poses
+        return
     start, goals = request.start, request.goals
     goal = goals[route.leg]
     which = f"goal {route.leg + 1} of {len(goals)}" if len(goals) > 1 else "goal"
