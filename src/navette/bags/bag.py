@@ -132,7 +132,8 @@ class Damage:
     reason: str
 
     def __str__(self) -> str:
-        return f"{self.path}: byte {self.position}: {self.reason}"
+        where = f"byte {self.position}: "
+        return f"{self.path}: {where}{self.reason.removeprefix(where)}"
 
 
 OnDamage = Callable[[Damage], None]
@@ -164,6 +165,11 @@ class BagReader(ABC):
     """Stamp of the first message; 0 without messages."""
     end_ns: int
     """Stamp of the last message; 0 without messages."""
+
+    @property
+    def losses(self) -> tuple[str, ...]:
+        """The problems by which messages are lost: a missing index loses none."""
+        return self.problems
 
     @property
     def files(self) -> tuple[Path, ...]:

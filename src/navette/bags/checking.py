@@ -156,7 +156,7 @@ def _check_counts(
         if stated != counted[topic]:
             findings.error(
                 "counts",
-                f"{topic.name}: {counted[topic]} messages, "
+                f"{topic.name}: {_messages(counted[topic])}, "
                 f"the statistics state {stated}",
             )
 
@@ -211,7 +211,7 @@ def _check_chunk(
         missing, wrong = (there - stated).total(), (stated - there).total()
         findings.error(
             "index",
-            f"{where}: its index lacks {missing} messages, {wrong} entries are wrong",
+            f"{where}: its index lacks {_messages(missing)}; wrong entries: {wrong}",
         )
 
 
@@ -271,3 +271,7 @@ def out_of_order(reader: BagReader) -> Iterator[str]:
         last[topic] = stamp
     for topic, count in back.items():
         yield f"{topic.name}: the stamps decrease {count} times in file order"
+
+
+def _messages(count: int) -> str:
+    return f"{count} message{'s' * (count != 1)}"

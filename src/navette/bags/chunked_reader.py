@@ -89,6 +89,10 @@ class ChunkedReader(BagReader):
     # -- common to all formats ---------------------------------------------------
 
     @property
+    def losses(self) -> tuple[str, ...]:
+        return self.index.losses
+
+    @property
     def chunks(self) -> Sequence[Chunk]:
         return self.index.chunks
 

@@ -47,6 +47,8 @@ class FileIndex:
     counts: Counter[int] | None = None
     """Messages by channel; None if they are not known without reading the chunks."""
     problems: list[str] = field(default_factory=list)
+    losses: tuple[str, ...] = ()
+    """The problems by which messages are lost."""
     remarks: list[str] = field(default_factory=list)
     is_scanned: bool = False
     """Whether the records were scanned, because the file's own index is unusable."""

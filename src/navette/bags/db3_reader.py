@@ -124,7 +124,7 @@ class Db3Reader(BagReader):
             count = self._database.execute(f"{query} (SELECT id FROM topics)")
             (unknown,) = count.fetchone()
             if unknown:
-                yield f"{unknown} messages of an undefined topic"
+                yield f"messages of an undefined topic: {unknown}"
         except _ERRORS as error:
             yield str(error)
 

@@ -122,6 +122,7 @@ class FolderReader(BagReader):
         self.size = sum(reader.size for reader in readers)
         self.version = metadata.version
         names = {reader: reader.path.name for reader in readers}
+        self._own_problems = tuple(problems)
         self.problems = (
             *problems,
             *(f"{names[r]}: {each}" for r in readers for each in r.problems),
@@ -135,6 +136,11 @@ class FolderReader(BagReader):
             topic: self._completed(topic) for r in readers for topic in r.topics
         }
         self.topics = tuple(dict.fromkeys(self._topic_of.values()))
+
+    @property
+    def losses(self) -> tuple[str, ...]:
+        parts = (f"{r.path.name}: {each}" for r in self.readers for each in r.losses)
+        return (*self._own_problems, *parts)
 
     def _completed(self, topic: BagTopic) -> BagTopic:
         """Complete a topic with the metadata and the types of other files."""

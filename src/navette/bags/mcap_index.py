@@ -3,6 +3,7 @@
 import re
 import zlib
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -20,6 +21,7 @@ from navette.bags.mcap_records import (
     RecordFile,
     chunk_head,
     parse,
+    parse_channel,
     parse_chunk_index,
     parse_message_index,
     read_chunk,
@@ -45,6 +47,7 @@ class McapIndex(FileIndex):
     channels: dict[int, Channel] = field(default_factory=dict)
     extras: ExtraPositions = field(default_factory=ExtraPositions)
     profile: str = ""
+    has_data_end: bool = False
 
 
 def read_index(file: RecordFile) -> McapIndex:
@@ -58,17 +61,40 @@ def read_index(file: RecordFile) -> McapIndex:
             file.path, "is not an MCAP file: the magic bytes are missing"
         )
     try:
-        index, problem = _read_summary(file), "there is no summary"
+        index, statistics = _read_summary(file)
     except (FileFormatError, DecodeError) as error:
-        index, problem = None, f"the summary cannot be read ({reason_of(error)})"
-    if index is None:
         index = scan(file)
+        index.losses = tuple(index.problems)
+        problem = f"the summary cannot be read ({reason_of(error)})"
         index.problems.insert(0, problem)
+        return index
+    if index is not None:
+        return index
+    index = scan(file)
+    index.problems += _contradictions(index, statistics)
+    index.losses = tuple(index.problems)
+    if not index.problems:
+        index.remarks.append("the file has no complete summary: all of it is read")
     return index
 
 
-def _read_summary(file: RecordFile) -> McapIndex | None:
-    """Read the summary; None if it is missing or incomplete."""
+def _contradictions(index: McapIndex, statistics: Statistics | None) -> Iterator[str]:
+    """Yield what the records of an undamaged file lack."""
+    if not index.has_data_end:
+        yield "the record at the end of the data is missing"
+    if statistics is None or index.counts is None:
+        return
+    found = sum(index.counts.values())
+    if found != statistics.message_count:
+        yield f"messages in the file: {found} of {statistics.message_count}"
+
+
+def _read_summary(file: RecordFile) -> tuple[McapIndex | None, Statistics | None]:
+    """Read the optional summary; no index if messages cannot be found with it.
+
+    Raises:
+        DecodeError, FileFormatError: footer or summary are missing or damaged.
+    """
     tail = len(MAGIC) + _FOOTER_SIZE
     if file.size < len(MAGIC) + tail or file.read(file.size - 8, 8) != MAGIC:
         raise FileFormatError(file.path, "the footer is missing")
@@ -78,7 +104,7 @@ def _read_summary(file: RecordFile) -> McapIndex | None:
     if head.opcode != Opcode.FOOTER:
         raise file.error(position, "no footer")
     if footer.summary_start == 0:
-        return None
+        return None, None
     length = position - footer.summary_start
     if not 0 <= length <= _LARGEST_SUMMARY:
         raise file.error(position, f"a summary of {length} bytes")
@@ -90,7 +116,9 @@ def _read_summary(file: RecordFile) -> McapIndex | None:
     return _index_of_summary(file, footer.summary_start, summary)
 
 
-def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex | None:
+def _index_of_summary(
+    file: RecordFile, start: int, summary: bytes
+) -> tuple[McapIndex | None, Statistics | None]:
     index = McapIndex()
     _read_header(file, index)
     statistics: Statistics | None = None
@@ -106,10 +134,10 @@ def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex
             _note(index, opcode, content)
     index.chunks.sort(key=lambda chunk: chunk.position)
     if statistics is None or not _is_complete(index, statistics):
-        return None
+        return None, statistics
     index.counts = Counter(statistics.channel_message_counts)
     index.extras.stated = statistics.attachment_count, statistics.metadata_count
-    return index
+    return index, statistics
 
 
 def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
@@ -143,7 +171,7 @@ def _note(index: McapIndex, opcode: int, content: bytes) -> None:
         schema: Schema = parse(Schema, content)
         index.schemas.setdefault(schema.id, schema)
     elif opcode == Opcode.CHANNEL:
-        channel: Channel = parse(Channel, content)
+        channel = parse_channel(content)
         index.channels.setdefault(channel.id, channel)
 
 
@@ -196,6 +224,7 @@ class _Walk:
         """Process one record; return the next position, None at the end of the data."""
         head = self._file.head(position)
         if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
+            self._index.has_data_end = head.opcode == Opcode.DATA_END
             return None
         if head.opcode not in _OPCODES:
             raise self._file.error(position, f"record of kind {head.opcode}")

@@ -1,7 +1,7 @@
 """Read the records of an MCAP file, with all lengths checked.
 
-Source: the MCAP specification, version 0. The ``mcap`` library decodes schemas,
-channels and statistics; the numerous headers, chunks and indexes are decoded here.
+Source: the MCAP specification, version 0. The ``mcap`` library decodes schemas and
+statistics; the numerous headers, channels, chunks and indexes are decoded here.
 """
 
 import struct
@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
+from mcap.records import Channel
 
 from navette.bags.binary_file import BinaryFile
 from navette.bags.chunks import Chunk, Entry
@@ -28,6 +29,7 @@ _CHUNK = struct.Struct("<QQQII")  # times, size, crc, length of the compression'
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 _LENGTH = struct.Struct("<Q")
 _STRING = struct.Struct("<I")
+_CHANNEL = struct.Struct("<HH")
 
 
 class Head(NamedTuple):
@@ -153,6 +155,38 @@ def message_entries(path: Path, chunk: Chunk, data: bytes) -> list[Entry]:
                 continue
         position = _record_at(path, chunk, data, position)[2]
     return entries
+
+
+def parse_channel(content: bytes) -> Channel:
+    """A channel; in place of :func:`parse`, because a file may have 65,535.
+
+    Raises:
+        DecodeError: the content is not a channel.
+    """
+    try:
+        number, schema = _CHANNEL.unpack_from(content)
+        topic, position = _string_at(content, _CHANNEL.size)
+        encoding, position = _string_at(content, position)
+        (size,) = _STRING.unpack_from(content, position)
+        position += _STRING.size
+        end = position + size
+        metadata = {}
+        while position < end:
+            key, position = _string_at(content, position)
+            metadata[key], position = _string_at(content, position)
+    except (struct.error, ValueError) as error:
+        raise DecodeError(f"not a valid Channel: {error}") from None
+    return Channel(number, topic, encoding, metadata, schema)
+
+
+def _string_at(content: bytes, position: int) -> tuple[str, int]:
+    """The string at a position, and the position after it."""
+    (length,) = _STRING.unpack_from(content, position)
+    begin = position + _STRING.size
+    end = begin + length
+    if end > len(content):
+        raise ValueError(f"a string of {length} bytes at {position}")
+    return content[begin:end].decode(), end
 
 
 def parse_chunk_index(number: int, content: bytes) -> Chunk:

@@ -70,6 +70,7 @@ def read_index(file: BagFile) -> BagIndex:
         index, problem = None, f"the index cannot be read ({reason_of(error)})"
     if index is None:
         index = scan(file)
+        index.losses = tuple(index.problems)
         index.problems.insert(0, problem)
     return index
 

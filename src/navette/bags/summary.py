@@ -135,8 +135,10 @@ def _by_name_and_type(
 
 def _joined(group: list[BagTopic]) -> BagTopic:
     """Return one topic with the QoS of all channels."""
+    if len(group) == 1:
+        return group[0]
     qos = dict.fromkeys(offer for topic in group for offer in topic.qos)
-    return group[0] if len(group) == 1 else replace(group[0], qos=tuple(qos))
+    return replace(group[0], qos=tuple(qos))
 
 
 def _stamps_by_topic(

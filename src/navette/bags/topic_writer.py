@@ -1,5 +1,6 @@
 """Interface of the writers of a recording, independent of the file format."""
 
+import re
 from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import Any
@@ -47,8 +48,19 @@ class Losses:
             shown = ", ".join(list(names)[:_NAMED])
             more = len(names) - _NAMED
             rest = f" and {more} more" if more > 0 else ""
-            lines.append(f"{sum(names.values())} {kind} ({shown}{rest})")
+            count = sum(names.values())
+            counted = _singular(kind) if count == 1 else kind
+            lines.append(f"{count} {counted} ({shown}{rest})")
         return lines
+
+
+def _singular(kind: str) -> str:
+    """Return ``message with a stamp`` for ``messages with a stamp``."""
+    for ending, one in (("entries", "entry"), ("s", "")):
+        found = re.search(rf"{ending}\b", kind)
+        if found:
+            return kind[: found.start()] + one + kind[found.end() :]
+    return kind
 
 
 class TopicWriter(ABC):

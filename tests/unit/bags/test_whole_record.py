@@ -139,11 +139,11 @@ def test_a_database_lists_what_it_cannot_hold(tmp_path: Path) -> None:
     writer = copied(source, tmp_path / "b.db3")
     assert writer.losses.lines == [
         "2 attachments (calibration.yaml, )",
-        "1 metadata records (vehicle)",
+        "1 metadata record (vehicle)",
         "33 channel metadata entries (/0, /1, /2 and 6 more)",
         "85 publish times (/0, /1, /2 and 6 more)",
         "85 sequence numbers (/0, /1, /2 and 6 more)",
-        "1 messages with a stamp after 2262 (/0)",
+        "1 message with a stamp after 2262 (/0)",
     ]
     database = sqlite3.connect(tmp_path / "b.db3")
     query = "SELECT topic_type, encoding, encoded_message_definition"
@@ -264,7 +264,7 @@ def test_service_events_are_sound_and_read(tmp_path: Path, kind: str) -> None:
         assert [m.data for m in reader.messages()] == [event]
     lines = copied(path, tmp_path / "b.bag").losses.lines
     assert len(lines) == 1, "the topic is listed and the conversion succeeds"
-    assert lines[0].startswith("1 messages: ")
+    assert lines[0].startswith("1 message: ")
 
 
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\0"])

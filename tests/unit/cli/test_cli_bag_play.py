@@ -117,7 +117,7 @@ def test_keys_on_a_real_terminal(terminal: Terminal) -> None:
     terminal.wait_for("paused.* 0.0 / 60.0 s")
     assert terminal.settings != terminal.before  # keys come without Enter
     terminal.press(b"s")
-    terminal.wait_for("1 messages")
+    terminal.wait_for(r"m1 message\x1b")
     terminal.press(b"\x1b[C")
     terminal.wait_for(" 0.1 / 60.0 s.*2 messages")
     terminal.press(b"\x1b[A\x1b[A")
@@ -194,3 +194,30 @@ def test_the_clock_needs_no_number() -> None:
     assert fill_values(["--clock", "a.mcap"]) == ["--clock", "40", "a.mcap"]
     assert fill_values(["--clock", "100"]) == ["--clock", "100"]
     assert fill_values(["a", "--clock"]) == ["a", "--clock", "40"]
+
+
+def test_the_sound_part_of_a_damaged_bag_is_played_and_the_exit_code_is_1(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "damaged.mcap"
+    writer = BagWriter(path)
+    kind = "std_msgs/msg/String"
+    channel = writer.add_channel("/chatter", kind, definition_text(kind))
+    for i in range(100):
+        writer.write(channel, i * S // 1000, serialize(String(data=f"{i:040}")))
+        if i % 10 == 9:
+            writer.flush()
+    writer.close()
+    data = bytearray(path.read_bytes())
+    frame = data.index(b"\x28\xb5\x2f\xfd", len(data) // 2)  # zstd's magic number
+    data[frame + 8 : frame + 12] = b"\xff\xff\xff\xff"
+    path.write_bytes(data)
+    done = subprocess.run(
+        command(path), env=environment(), capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1, done.stderr
+    played = re.search(r"played: (\d+) messages", done.stderr)
+    assert played is not None, done.stderr
+    assert 50 < int(played[1]) < 100
+    assert "not played: 1 damaged part" in done.stderr
+    assert re.search(r"damaged.mcap: byte \d+: chunk: damaged zstd data", done.stderr)

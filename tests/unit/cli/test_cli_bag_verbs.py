@@ -226,7 +226,7 @@ def test_what_a_format_cannot_hold_is_listed(tmp_path: Path) -> None:
     assert (
         "not kept: 2 messages: json messages are not ROS messages (/a)" in result.stderr
     )
-    assert "1 messages" in result.stderr
+    assert "1 message," in result.stderr
 
 
 def test_an_unfinished_recording_names_the_way_to_recover_it(tmp_path: Path) -> None:

@@ -286,7 +286,7 @@ def test_waiting_ends(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
     talker.create_publisher(String, "silent", 10)
     with pytest.raises(click.exceptions.Exit):
         echo_of(talker, "silent", timeout_s=2.0, count=1)
-    assert "received 0 messages on /silent in 2 s" in capsys.readouterr().err
+    assert "messages received on /silent: 0 in 2 s" in capsys.readouterr().err
 
 
 def test_a_timeout_after_messages_is_a_success(

@@ -134,7 +134,7 @@ def _copy(
     from navette.bags.editing import copy
     from navette.bags.writing import open_writer
     from navette.cli.bag.progress import progress
-    from navette.cli.bag.text import count_text, size_text
+    from navette.cli.bag.text import counted, size_text
 
     output = target.output
     if output.exists() and any(output.samefile(path) for path in reader.files):
@@ -163,7 +163,7 @@ def _copy(
     suffix = f", {size_text(size)}" if size else ""
     for loss in writer.losses.lines:
         note(f"not kept: {loss}")
-    note(f"{output}: {count_text(count)} messages{suffix}")
+    note(f"{output}: {counted(count, 'message')}{suffix}")
     return count
 
 

@@ -101,6 +101,8 @@ def play(
 ) -> None:
     """Play recordings: publish their messages with the recorded timing.
 
+    Damaged parts are left out; the exit code is then 1.
+
     Keys: space pauses and resumes, s or → plays the next message, ← goes back 5 s,
     ↑ and ↓ change the rate, q quits.
     """
@@ -156,7 +158,10 @@ def _play(
             screen.report_failure(f"stopped: {error}")
             return FAILED
         screen.report(word)
-    return INTERRUPTED if word == "interrupted" else 0
+        screen.report_losses(playback.losses)
+    if word == "interrupted":
+        return INTERRUPTED
+    return FAILED if playback.losses else 0
 
 
 def _keyboard(playback: "BagPlayback") -> Callable[[str], None]:

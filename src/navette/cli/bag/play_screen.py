@@ -1,6 +1,6 @@
 """Progress of the playback on stderr; stdout is left for data."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,8 +12,10 @@ from rich.text import Text
 
 from navette.bags.play import PlayState
 from navette.bags.play.node import PlayProgress
+from navette.cli.bag.text import counted
 
 _REFRESH_HZ = 12
+_MOST_LOSSES = 10
 _WIDTH = 32
 _BESIDE_BAR = 62  # columns of the figures beside the bar
 _FIRST_DATE_NS = 10**17  # smaller stamps (before 1973) are simulated time
@@ -44,7 +46,7 @@ class PlayScreen:
         length_s = (progress.end_ns - progress.begin_ns) / 1e9
         head = Text("Playing", style="bold cyan")
         head += Text(f"  {' '.join(p.name for p in paths)}", style="bold")
-        head += Text(f" · {length_s:.1f} s · {topics} topic{'s' * (topics != 1)}")
+        head += Text(f" · {length_s:.1f} s · {counted(topics, 'topic')}")
         if progress.begin_ns > _FIRST_DATE_NS:
             head += Text(f" · {_date(progress.begin_ns)}", style="dim")
         self._console.print(head, soft_wrap=True)
@@ -74,10 +76,20 @@ class PlayScreen:
         progress = self._progress()
         place_s = (progress.position_ns - progress.begin_ns) / 1e9
         passes = f", pass {progress.passes}" if progress.passes > 1 else ""
-        messages = f"{progress.published} message{'s' * (progress.published != 1)}"
+        messages = counted(progress.published, "message")
         line = Text(f"{word}: ", style="bold")
         line += Text(f"{messages}, {place_s:.1f} s{passes}")
         self._console.print(line, soft_wrap=True)
+
+    def report_losses(self, losses: Sequence[str]) -> None:
+        """Print which parts of the recordings could not be played."""
+        if not losses:
+            return
+        self.report_failure(f"not played: {counted(len(losses), 'damaged part')}")
+        for loss in losses[:_MOST_LOSSES]:
+            self.report_failure(f"  {loss}")
+        if len(losses) > _MOST_LOSSES:
+            self.report_failure("  … (all of them: navette bag check FILE)")
 
     def report_failure(self, text: str) -> None:
         self._console.print(Text(text, style="bold red"), soft_wrap=True)
@@ -96,7 +108,7 @@ class PlayScreen:
             Text(f"{place_s:>{width}.1f} / {length_s:.1f} s"),
             self._bar(place_s / length_s if length_s else 1.0, style),
             Text(f"×{progress.rate:.3g}", style="cyan"),
-            Text(f"{progress.published} messages", style="dim"),
+            Text(counted(progress.published, "message"), style="dim"),
             Text(f"pass {progress.passes}" if progress.passes > 1 else "", style="dim"),
         )
         return line

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from navette.cli.bag.text import count_text, size_text
+from navette.cli.bag.text import counted, size_text
 from navette.runtime import Stopwatch
 
 if TYPE_CHECKING:
@@ -60,9 +60,9 @@ class RecordScreen:
 
     def _figures(self) -> str:
         recorder = self._recorder
-        count = count_text(recorder.message_count)
         return (
-            f"{count} messages of {len(recorder.topics)} topics, "
+            f"{counted(recorder.message_count, 'message')} of "
+            f"{counted(len(recorder.topics), 'topic')}, "
             f"{size_text(recorder.payload_bytes)} before compression"
         )
 

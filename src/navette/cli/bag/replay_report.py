@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from navette.bags.compare import Comparison, TopicComparison
+from navette.cli.bag.text import counted
 from navette.cli.output import aligned, show, styled
 from navette.cli.stderr import note
 from navette.navigation.stack.replay import ReplaySummary
@@ -15,11 +16,11 @@ def report(
     """Print the summary on standard error and the differences on standard output."""
     factor = summary.duration_s / summary.wall_time_s if summary.wall_time_s else 0.0
     note(
-        f"fed {summary.fed} messages on {', '.join(summary.inputs)}: "
+        f"fed {counted(summary.fed, 'message')} on {', '.join(summary.inputs)}: "
         f"{summary.duration_s:.1f} s in {summary.wall_time_s:.1f} s (×{factor:.0f})"
     )
     if record is not None:
-        note(f"recorded {summary.recorded} messages in {record}")
+        note(f"recorded {counted(summary.recorded, 'message')} in {record}")
     if comparison is not None:
         show("\n".join(_comparison_lines(comparison, summary.begin_ns)))
 

@@ -7,7 +7,7 @@ from rich.text import Text
 
 from navette.bags.checking import CheckReport, Severity
 from navette.cli.bag.tables import open_console
-from navette.cli.bag.text import count_text
+from navette.cli.bag.text import counted
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow"}
 
@@ -28,13 +28,13 @@ def show_report(report: CheckReport) -> None:
         severity = f"{finding.severity.value:<8}"
         style = _STYLES[finding.severity]
         console.print(Text.assemble((severity, style), finding.text))
-    count = f"{count_text(report.messages)} messages"
+    count = counted(report.messages, "message")
     if report.is_sound:
         verdict, rest = ("sound", "bold green"), f": {count} read"
     elif report.messages:
         hint = f"navette bag recover {report.path} -o …"
         verdict = ("damaged", "bold red")
-        rest = f": {count} are readable; {hint} saves them"
+        rest = f": {count} readable; {hint} saves what is readable"
     else:
         verdict, rest = ("damaged", "bold red"), ": nothing is readable"
     console.print(Text.assemble(f"{report.path}: ", verdict, rest))

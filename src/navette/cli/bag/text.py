@@ -65,3 +65,8 @@ def count_text(count: int, *, grouped: bool | None = None) -> str:
     if grouped is None:
         grouped = is_terminal()
     return f"{count:,}".replace(",", "\u202f") if grouped else str(count)
+
+
+def counted(count: int, noun: str) -> str:
+    """Return ``1 message`` or ``2 messages``."""
+    return f"{count_text(count)} {noun}{'s' * (count != 1)}"

@@ -58,7 +58,7 @@ def echo(node: Node, options: EchoOptions) -> None:
         left_s = max(0.0, (deadline_ns - node.context.clock.now_ns) / 1e9)
     enough = wait_for(node, lambda: screen.is_full, left_s)
     if not enough and (options.limit is not None or not screen.count):
-        fail(f"received {screen.count} messages on {topic} in {options.timeout_s:g} s")
+        fail(f"messages received on {topic}: {screen.count} in {options.timeout_s:g} s")
 
 
 class Screen:
@@ -131,4 +131,4 @@ def _profile(node: Node, topic: str, overrides: QosOverrides) -> QoSProfile:
 
 
 def _report_lost(event: Any) -> None:
-    note(f"{event.total_count_change} messages lost ({event.total_count} in total)")
+    note(f"messages lost: {event.total_count_change} ({event.total_count} in total)")

@@ -70,7 +70,7 @@ class DroppedInputs:
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if is_new else DiagnosticStatus.OK,
             name=f"{self._node.get_fully_qualified_name()}: dropped inputs",
-            message=f"{total} messages dropped",
+            message=f"{total} message{'s' * (total != 1)} dropped",
             values=values,
         )
         array = DiagnosticArray(status=[status])
