@@ -15,12 +15,16 @@ MakeSimulation = Callable[..., Simulation]
 
 @pytest.fixture
 def simulate() -> Iterator[MakeSimulation]:
-    """Makes simulations from keywords of RunOptions."""
+    """Makes simulations from keywords of RunOptions, and the parameters of nodes."""
     made: list[Simulation] = []
 
-    def make(scene: Scene | None = None, **options: Any) -> Simulation:
-        defaults: dict[str, Any] = {"headless": True, "speed": math.inf}
-        made.append(Simulation(RunOptions(**{**defaults, **options}), scene=scene))
+    def make(
+        scene: Scene | None = None,
+        parameters: dict[str, dict[str, Any]] | None = None,
+        **options: Any,
+    ) -> Simulation:
+        given = RunOptions(**{"headless": True, "speed": math.inf, **options})
+        made.append(Simulation(given, scene=scene, parameters=parameters))
         return made[-1]
 
     yield make

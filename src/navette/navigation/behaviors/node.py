@@ -156,7 +156,9 @@ class BehaviorNode(StageNode):
     def _start(self) -> None:
         params = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-        self._obstacles = ObstacleTracker(self._tracker)
+        self._obstacles = ObstacleTracker(
+            self._tracker, params.body().footprint, params.blind_reverse_m
+        )
         self._collision = CollisionCheck(params.body())
         self._located_ns = None
 
@@ -207,7 +209,9 @@ class BehaviorNode(StageNode):
         speed = max(params.max_speed_mps, abs(self._tracker.velocity[0]))
         reach_m = self._collision.reach(speed) + speed * params.simulate_ahead_s
         try:
-            found = self._obstacles.place(self._now_ns, params.lethal_cost, reach_m)
+            found = self._obstacles.place(
+                self._now_ns, params.lethal_cost, reach_m, reach_m
+            )
         except InvalidValueError as error:
             # The last valid costmap ages until the robot stops.
             invalid = InvalidInputError("out_of_range", str(error))

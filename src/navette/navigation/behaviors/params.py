@@ -49,6 +49,14 @@ class BehaviorParams(Params):
         2.0, "motion that must be free; else the behavior fails (COLLISION_AHEAD)",
         unit="s", above=0.0,
     )  # fmt: skip
+    blind_reverse_m: float = param(
+        0.1,
+        "how far the body may leave its outline, where the robot was put down, into "
+        "space behind it that no beam has seen, backing up and turning: a hand's width",
+        unit="m",
+        at_least=0.0,
+        at_most=10.0,
+    )
     reaction_s: float = param(
         0.2, "delay from command to motion", unit="s", at_least=0.0
     )
@@ -66,6 +74,13 @@ class BehaviorParams(Params):
         1.0, "a behavior fails after this long with stale inputs", unit="s",
         at_least=0.0,
     )  # fmt: skip
+    stall_time_s: float = param(
+        0.3,
+        "no motion for this long, though commanded, ends a behavior; 0: never",
+        unit="s",
+        at_least=0.0,
+        at_most=10.0,
+    )
     teleop_timeout_s: float = param(
         0.5, "age at which assisted_teleop drops a command", unit="s", above=0.0
     )

@@ -9,6 +9,7 @@ from navette.navigation.behaviors.motions import (
 )
 from navette.navigation.behaviors.params import BehaviorParams
 from navette.navigation.grids import CollisionCheck
+from navette.navigation.grids.stall_monitor import StallMonitor
 
 Command = tuple[float, float]
 """m/s, rad/s"""
@@ -86,6 +87,7 @@ class MotionBehavior:
         self._params = params
         self._collision = collision
         self._allowance = Allowance(allowance_s)
+        self._stall = StallMonitor(params.stall_time_s)
         self._stale_s = 0.0
         self._last = STOP
 
@@ -96,7 +98,8 @@ class MotionBehavior:
     def step(self, inputs: BehaviorInputs, dt: float) -> BehaviorStep:
         """Return the command for the next ``dt`` seconds.
 
-        1. time allowance; 2. stale inputs; 3. motion; 4. look ahead; 5. accelerate.
+        1. time allowance; 2. stale inputs; 3. stall; 4. motion; 5. look ahead;
+        6. accelerate.
         """
         timeout = self._allowance.spend(dt)
         if timeout is not None:
@@ -104,13 +107,18 @@ class MotionBehavior:
         now = inputs.motion
         if now is None or not inputs.sees_obstacles:
             self._last = STOP
+            self._stall.reset()
             return BehaviorStep(STOP, self._stale_end(now, dt))
         self._stale_s = 0.0
+        if self._stall.update(self._last, now.pose, (now.speed, now.turn_rate), dt):
+            text = "the robot does not move as commanded: something is in its way"
+            return BehaviorStep(STOP, BehaviorEnd("COLLISION_AHEAD", text))
         target = self._motion.step(now)
         if target is None:
             return BehaviorStep(STOP, REACHED)
         if not self._is_free(now, target):
-            text = f"an obstacle within {self._params.simulate_ahead_s:g} s of motion"
+            what = "an obstacle" if target.speed >= 0 else "an obstacle or unseen space"
+            text = f"{what} within {self._params.simulate_ahead_s:g} s of motion"
             return BehaviorStep(STOP, BehaviorEnd("COLLISION_AHEAD", text))
         self._last = self._accelerated(target, dt)
         return BehaviorStep(self._last)

@@ -26,6 +26,7 @@ from navette.navigation.control.records import (
     FollowerOutput,
 )
 from navette.navigation.control.states import ControlState
+from navette.navigation.grids import NONE_UNSEEN
 from navette.plugins import checked_array, own_call
 
 _AHEAD_M = 2.0  # how far along the path the robot may be beyond the last place
@@ -134,9 +135,19 @@ class CommandFollower:
         if not drove:
             self._restart()
 
-    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
-        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
-        self._collision.set_obstacles(points, half_cell)
+    @property
+    def unseen_reach_m(self) -> float:
+        """Distance around the robot within which unseen space matters."""
+        return self._collision.reach(self._params.max_speed_mps)
+
+    def set_obstacles(
+        self,
+        points: NDArray[np.float64],
+        half_cell: float,
+        unseen: NDArray[np.float64] = NONE_UNSEEN,
+    ) -> None:
+        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
+        self._collision.set_obstacles(points, half_cell, unseen)
         self._obstacles = points
 
     def pause(self) -> None:

@@ -14,10 +14,11 @@ from navette.navigation.control.speed_profile import (
     cruise_speed,
     speed_profile,
 )
-from navette.navigation.control.states import ControlState
+from navette.navigation.control.states import ControlState, LimitedBy
 
 _HYSTERESIS_RAD = 0.4  # additional heading error that a moving robot tolerates
 _SLOWEST = 0.3  # least share of the speed at low clearance or a heading error
+_ALIGNED = 0.95  # cosine of a heading error that hardly slows the robot down
 _PREVIEW_S = 0.15  # delay of the drive
 _STOP_SHARE = 0.3  # of the goal tolerance: distance at which a piece is complete
 
@@ -66,9 +67,10 @@ class PieceDrive:
         if inputs.speed * self._piece.direction < -STANDSTILL_MPS:
             return StepDecision(STOP, ControlState.FOLLOWING, brakes=True)
         kappa = parts.steering.curvature(self._piece, at, inputs.pose, inputs.speed)
-        v = self._speed(kappa, inputs.speed, clearance) * self._piece.direction
+        speed, cause = self._speed(kappa, inputs.speed, clearance)
+        v = speed * self._piece.direction
         command = VelocityCommand(v, v * kappa / parts.turn_gain.value)
-        return StepDecision(command, ControlState.FOLLOWING)
+        return StepDecision(command, ControlState.FOLLOWING, limited_by=cause)
 
     def reconsider(self) -> None:
         """Choose the direction of a turn again: the chosen one is blocked."""
@@ -101,22 +103,30 @@ class PieceDrive:
             return None
         return decision
 
-    def _speed(self, kappa: float, speed: float, clearance: float) -> float:
-        """Return the least of the limits: bends, piece end, errors, obstacles."""
+    def _speed(
+        self, kappa: float, speed: float, clearance: float
+    ) -> tuple[float, LimitedBy]:
+        """Return the least of the limits, and which one that is."""
         params = self._parts.params
         ahead = self._piece.index_at(self.at.s + _PREVIEW_S * abs(speed))
         left = self._piece.length - self.at.s
-        v = min(
-            self._speeds[self.at.sample],
-            self._speeds[ahead],
-            approach_speed(left, speed, params),
-        )
+        bend = min(self._speeds[self.at.sample], self._speeds[ahead])
         if kappa:
             turn_rate = params.max_turn_rate_radps * self._parts.turn_gain.value
-            v = min(v, turn_rate / abs(kappa))
-        v *= max(_SLOWEST, math.cos(self.at.heading_error))
+            bend = min(bend, turn_rate / abs(kappa))
+        limits = [
+            (self._cruise, LimitedBy.NONE),
+            (bend, LimitedBy.BEND),
+            (approach_speed(left, speed, params), LimitedBy.PATH_END),
+        ]
+        v, cause = min(limits)
+        aligned = math.cos(self.at.heading_error)
+        v *= max(_SLOWEST, aligned)
+        if aligned < _ALIGNED:
+            cause = LimitedBy.HEADING
         span = params.slow_clearance_m - params.collision_margin_m
         if span > 0 and clearance < params.slow_clearance_m:
             share = (clearance - params.collision_margin_m) / span
-            v = min(v, self._cruise * max(_SLOWEST, share))
-        return v
+            near = self._cruise * max(_SLOWEST, share)
+            v, cause = min((v, cause), (near, LimitedBy.CLEARANCE))
+        return v, cause

@@ -19,6 +19,7 @@ from navette.navigation.control.states import ControlState
 EXPLAINED = frozenset(
     {
         ControlState.OFF_PATH,
+        ControlState.STALLED,
         ControlState.STALE_ODOMETRY,
         ControlState.STALE_COSTMAP,
         ControlState.STALE_PATH,
@@ -54,6 +55,12 @@ def explain(state: ControlState, now: Situation, params: ControlParams) -> str:
     match state:
         case ControlState.OFF_PATH:
             return _off_path(now, params)
+        case ControlState.STALLED:
+            return (
+                f"the robot did not move for {params.stall_time_s:g} s though "
+                "commanded: something that its sensors do not see is in the way, or "
+                "the wheels are blocked or stopped by hardware"
+            )
         case ControlState.STALE_ODOMETRY:
             return _stale_odometry(now, params)
         case ControlState.STALE_COSTMAP:

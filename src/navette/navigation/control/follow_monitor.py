@@ -10,6 +10,7 @@ from navette.navigation.control.states import ControlState
 # Nav2's error code for a state that persists longer than the tolerance.
 _PERSISTENT = {
     ControlState.BLOCKED: "PATIENCE_EXCEEDED",
+    ControlState.STALLED: "FAILED_TO_MAKE_PROGRESS",
     ControlState.OFF_PATH: "PATIENCE_EXCEEDED",
     ControlState.STALE_ODOMETRY: "TF_ERROR",
     ControlState.STALE_COSTMAP: "CONTROLLER_TIMED_OUT",

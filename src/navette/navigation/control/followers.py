@@ -12,6 +12,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
+from navette.navigation.grids import NONE_UNSEEN
 
 
 class Follower(Protocol):
@@ -25,6 +26,10 @@ class Follower(Protocol):
     def obstacle_reach_m(self) -> float:
         """Distance around the robot within which obstacles matter."""
 
+    @property
+    def unseen_reach_m(self) -> float:
+        """Distance around the robot within which unseen space matters."""
+
     def reset(self, rest: ControlState = ...) -> None:
         """Drop the path and stop at once; ``rest`` is the state to report."""
 
@@ -35,8 +40,13 @@ class Follower(Protocol):
             InvalidValueError: not (N, 3) or not finite; the follower is then reset.
         """
 
-    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
-        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
+    def set_obstacles(
+        self,
+        points: NDArray[np.float64],
+        half_cell: float,
+        unseen: NDArray[np.float64] = NONE_UNSEEN,
+    ) -> None:
+        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
 
     def pause(self) -> None:
         """Continue later from the robot's motion then, not from the last command."""

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from navette.errors import InvalidInputError, InvalidValueError
+from navette.geometry import Footprint
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
@@ -26,7 +27,7 @@ from navette.navigation.control.explanations import (
     explain,
 )
 from navette.navigation.control.followers import make_follower
-from navette.navigation.control.limits import NO_CAP, SpeedCap
+from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
     PAUSED,
@@ -38,8 +39,9 @@ from navette.navigation.control.servers.follow_path import (
     FollowContext,
     FollowPathServer,
 )
-from navette.navigation.control.states import ControlState
+from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import ObstacleTracker
+from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
@@ -81,6 +83,11 @@ class ControlNode(StageNode):
             rate_hz=10.0,
             timeout_s=0.19,
             callback="on_costmap",
+        ),
+        Input.of(
+            topics.MAP,
+            "what the costmap does not show, such as behind the robot",
+            callback="on_map",
         ),
         Input.of(
             topics.PLANNER_STATUS,
@@ -131,7 +138,7 @@ class ControlNode(StageNode):
         self._method = ""  # … which may name a steering method
         self._fault = ""  # newest of the user's method
         self._collision_action = CollisionMonitorState.DO_NOTHING
-        self._obstacles = ObstacleTracker(self._tracker)
+        self._obstacles = self._new_obstacles()
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
@@ -141,8 +148,11 @@ class ControlNode(StageNode):
         self._stopped_in, self._stopped_ns = ControlState.IDLE, _NEVER
         self._planner_state = ""
         self._is_paused = False
+        self._stall = StallMonitor(params.stall_time_s)
+        self._commanded = STOP
         self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
         self._ticks_to_report = 0
+        self._reported = (ControlState.IDLE, LimitedBy.NONE)
         self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
         context = FollowContext(
@@ -192,6 +202,14 @@ class ControlNode(StageNode):
         """Store the newest costmap until the pose at its stamp is available."""
         self._obstacles.receive(msg, self._now_ns)
 
+    def on_map(self, msg: OccupancyGrid) -> None:
+        """Store the map for what the costmap does not show."""
+        frame_id, map_frame = msg.header.frame_id, self.params.map_frame
+        if frame_id != map_frame:
+            text = f"map in frame {frame_id!r}; expected map_frame, {map_frame!r}"
+            raise InvalidInputError("unknown_frame", text)
+        self._obstacles.remember(msg)
+
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """Note that the planner is alive; drop the path if the planner restarted."""
         self._planner_ns = self._now_ns
@@ -222,10 +240,9 @@ class ControlNode(StageNode):
         is_masked = Commander.of(msg).masks(self._output_topic)
         if is_masked != self._is_paused:
             self._is_paused = is_masked
-            try:
-                self._follower.pause()
-            except MethodFaultError as error:
-                self._on_fault(error)
+            self._pause_follower()
+            self._stall.reset()
+            self._commanded = STOP
             self._tick()
 
     def on_params_changed(self, old: ControlParams) -> None:
@@ -233,8 +250,11 @@ class ControlNode(StageNode):
         params: ControlParams = self.params
         if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
             self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-            self._obstacles = ObstacleTracker(self._tracker)
+            self._obstacles = self._new_obstacles()
             self._located_ns = _NEVER
+        footprint = Footprint.from_flat(params.footprint_m)
+        self._obstacles.configure(footprint, params.blind_reverse_m)
+        self._stall = StallMonitor(params.stall_time_s)
         if params.rate_hz != old.rate_hz:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(1 / params.rate_hz, self._tick)
@@ -264,6 +284,11 @@ class ControlNode(StageNode):
     @property
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
+
+    def _new_obstacles(self) -> ObstacleTracker:
+        params: ControlParams = self.params
+        footprint = Footprint.from_flat(params.footprint_m)
+        return ObstacleTracker(self._tracker, footprint, params.blind_reverse_m)
 
     def _new_follower(self, params: ControlParams) -> None:
         """Replace the follower; obstacles are placed for it before it moves."""
@@ -329,7 +354,7 @@ class ControlNode(StageNode):
         inputs = FollowerInputs(
             pose, speed, turn_rate, self._ages(), self._tracker.side_speed
         )
-        output = self._step(inputs)
+        output = self._stopped_if_stalled(inputs, self._step(inputs))
         self._send(output)
         self._report(output)
         self._report_collision(output)
@@ -345,12 +370,34 @@ class ControlNode(StageNode):
             self._on_fault(error)
             return self._follower.step(inputs, dt)
 
+    def _pause_follower(self) -> None:
+        try:
+            self._follower.pause()
+        except MethodFaultError as error:
+            self._on_fault(error)
+
     def _on_fault(self, error: MethodFaultError) -> None:
         """Stop, and log a fault of a user's method once."""
         self._follower.reset(ControlState.METHOD_FAILED)
         if str(error) != self._fault:
             self._fault = str(error)
             self.get_logger().error(f"{self._fault}\nThe robot stops.")
+
+    def _stopped_if_stalled(
+        self, inputs: FollowerInputs, output: FollowerOutput
+    ) -> FollowerOutput:
+        """Stop instead of pushing against what no sensor sees."""
+        pose = inputs.pose
+        measured = (inputs.speed, inputs.turn_rate, inputs.side_speed)
+        dt = 1 / self.params.rate_hz
+        stalls = inputs.plausible and self._stall.update(
+            self._commanded, pose, measured, dt
+        )
+        if output.state.moves and (stalls or self._stall.forbids(output.command, pose)):
+            self._pause_follower()
+            output = output._replace(command=STOP, state=ControlState.STALLED)
+        self._commanded = output.command
+        return output
 
     def _locate(self) -> None:
         if self._odometry is not None and self._tracker.update(self._odometry):
@@ -376,7 +423,10 @@ class ControlNode(StageNode):
             return
         try:
             obstacles = self._obstacles.place(
-                self._now_ns, self.params.lethal_cost, self._follower.obstacle_reach_m
+                self._now_ns,
+                self.params.lethal_cost,
+                self._follower.obstacle_reach_m,
+                self._follower.unseen_reach_m,
             )
         except InvalidValueError as error:
             # The last valid costmap ages until the robot stops.
@@ -400,19 +450,23 @@ class ControlNode(StageNode):
     def _report(self, output: FollowerOutput) -> None:
         """Publish the state at once when it changes, and every few steps."""
         self._ticks_to_report -= 1
-        if self._ticks_to_report > 0 and self._status.state == output.state:
+        shown = (output.state, output.limited_by)
+        if self._ticks_to_report > 0 and shown == self._reported:
             return
+        self._reported = shown
         self._ticks_to_report = _TICKS_PER_REPORT
         self._explain(output.state)
         self._status.report(
             str(output.state),
             _level(output.state),
+            cause=output.limited_by,
             speed_mps=output.command.speed,
             turn_rate_radps=output.command.turn_rate,
             cross_track_m=output.cross_track_m,
             heading_error_rad=output.heading_error_rad,
             distance_left_m=output.distance_left_m,
             clearance_m=output.clearance_m,
+            limited_by=str(output.limited_by),
         )
 
     def _explain(self, state: ControlState) -> None:
@@ -483,5 +537,10 @@ _NORMAL = (ControlState.IDLE, ControlState.PAUSED, ControlState.REACHED)
 def _level(state: ControlState) -> bytes:
     if state.moves or state in _NORMAL:
         return StatusReporter.OK
-    warnings = (ControlState.BLOCKED, ControlState.OFF_PATH, ControlState.MISSED_GOAL)
+    warnings = (
+        ControlState.BLOCKED,
+        ControlState.STALLED,
+        ControlState.OFF_PATH,
+        ControlState.MISSED_GOAL,
+    )
     return StatusReporter.WARN if state in warnings else StatusReporter.ERROR

@@ -128,6 +128,14 @@ class ControlParams(Params):
         0.3, "clearance below which the robot slows down; 0: never", unit="m",
         at_least=0.0,
     )  # fmt: skip
+    blind_reverse_m: float = param(
+        0.1,
+        "how far the body may leave its outline, where the robot was put down, into "
+        "space behind it that no beam has seen, backing up and turning: a hand's width",
+        unit="m",
+        at_least=0.0,
+        at_most=10.0,
+    )
     reaction_s: float = param(
         0.2, "delay from command to motion", unit="s", at_least=0.0
     )
@@ -192,6 +200,13 @@ class ControlParams(Params):
         10.0, "follow_path fails after this long without progress; 0: never", unit="s",
         at_least=0.0,
     )  # fmt: skip
+    stall_time_s: float = param(
+        0.3,
+        "no motion for this long, though commanded, stops the robot; 0: never",
+        unit="s",
+        at_least=0.0,
+        at_most=10.0,
+    )
     idle_zeros: int = param(
         5, "zero commands published after the robot came to rest", at_least=1
     )

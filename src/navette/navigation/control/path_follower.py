@@ -26,7 +26,8 @@ from navette.navigation.control.records import (
     StepDecision,
 )
 from navette.navigation.control.rotate import TurnInPlace
-from navette.navigation.control.states import ControlState
+from navette.navigation.control.states import ControlState, LimitedBy
+from navette.navigation.grids import NONE_UNSEEN
 
 _START_WINDOW_M = 2.0  # how far along a new path the robot may already be
 _BLOCKED_SCALE = 0.1  # below this share of the command the robot is blocked …
@@ -57,6 +58,7 @@ class PathFollower:
         self._last: VelocityCommand | None = None
         self._clearance = math.inf
         self._scale = 1.0
+        self._limited_by = LimitedBy.NONE
         self._blocked = False
 
     @property
@@ -68,6 +70,11 @@ class PathFollower:
     def obstacle_reach_m(self) -> float:
         """Distance around the robot within which obstacles matter."""
         return self._parts.collision.reach(self._params.max_speed_mps)
+
+    @property
+    def unseen_reach_m(self) -> float:
+        """Distance around the robot within which unseen space matters."""
+        return self._parts.collision.reach(self._params.reverse_speed_mps)
 
     def set_path(self, poses: NDArray[np.float64]) -> None:
         """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
@@ -92,9 +99,14 @@ class PathFollower:
         self._last = None
         self._parts.steering.reset()
 
-    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
-        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
-        self._parts.collision.set_obstacles(points, half_cell)
+    def set_obstacles(
+        self,
+        points: NDArray[np.float64],
+        half_cell: float,
+        unseen: NDArray[np.float64] = NONE_UNSEEN,
+    ) -> None:
+        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
+        self._parts.collision.set_obstacles(points, half_cell, unseen)
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
@@ -118,10 +130,13 @@ class PathFollower:
         )
         if decision.state.rests:
             return self._stop(decision.state)
+        self._limited_by = decision.limited_by
         if decision.brakes:
             command = brake(last, self._params, dt)
         else:
             command = approach(last, decision.command, self._params, dt)
+            if abs(command.speed) < abs(decision.command.speed) - 1e-6:
+                self._limited_by = LimitedBy.ACCELERATION
         command, blocked = self._keep_clear(inputs.pose, decision, command)
         state = ControlState.BLOCKED if blocked else decision.state
         return self._emit(command, state)
@@ -175,6 +190,8 @@ class PathFollower:
                 self._active.reconsider()
             return STOP, True
         self._scale = scale = min(1.0, scale)
+        if scale < 1.0:
+            self._limited_by = LimitedBy.COLLISION_CHECK
         return command.scaled(scale), False
 
     def _stop(self, state: ControlState) -> FollowerOutput:
@@ -199,4 +216,5 @@ class PathFollower:
             left,
             self._clearance,
             self._scale,
+            self._limited_by,
         )

@@ -10,6 +10,7 @@ from navette.geometry import Footprint, Pose2, advanced
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import collision_check
 from navette.navigation.control.limits import (
+    NO_CAP,
     STOP,
     SpeedCap,
     VelocityCommand,
@@ -30,8 +31,8 @@ from navette.navigation.control.rollouts import (
     LocalField,
     PathWindow,
 )
-from navette.navigation.control.states import ControlState
-from navette.navigation.grids import body_points, distance_field
+from navette.navigation.control.states import ControlState, LimitedBy
+from navette.navigation.grids import NONE_UNSEEN, body_points, distance_field
 
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
@@ -57,6 +58,7 @@ class PredictiveFollower:
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._mppi = Mppi(params, self._body)
         self._field = _open_field()
+        self._speed_limits = NO_CAP
         self.reset()
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
@@ -83,6 +85,11 @@ class PredictiveFollower:
             self._collision.reach(params.max_speed_mps),
             params.cruise_speed_mps * self._mppi.horizon_s + 0.5,
         )
+
+    @property
+    def unseen_reach_m(self) -> float:
+        """Distance around the robot within which unseen space matters."""
+        return self._collision.reach(self._params.reverse_speed_mps)
 
     def set_path(self, poses: NDArray[np.float64]) -> None:
         """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
@@ -116,11 +123,16 @@ class PredictiveFollower:
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
-        self._mppi.limit_speed(limits)
+        self._speed_limits = limits
 
-    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
-        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
-        self._collision.set_obstacles(points, half_cell)
+    def set_obstacles(
+        self,
+        points: NDArray[np.float64],
+        half_cell: float,
+        unseen: NDArray[np.float64] = NONE_UNSEEN,
+    ) -> None:
+        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
+        self._collision.set_obstacles(points, half_cell, unseen)
         self._field = local_field(
             points, 2 * half_cell, self._params.mppi_clearance_m + 1.0
         )
@@ -140,6 +152,7 @@ class PredictiveFollower:
         if abs(self._cross_track) > self._params.max_deviation_m:
             command = brake(last, self._params, dt)
             return self._emit(command, ControlState.OFF_PATH)
+        self._mppi.limit_speed(self._limits_at(inputs.pose))
         ahead = advanced(
             inputs.pose, last.speed, last.turn_rate, _DELAY_S, side=last.side
         )
@@ -148,6 +161,12 @@ class PredictiveFollower:
         )
         command = approach(last, wanted, self._params, dt)
         return self._keep_clear(inputs.pose, command)
+
+    def _limits_at(self, pose: Pose2) -> SpeedCap:
+        """Return the limits; in reverse also that of space that was never seen."""
+        reverse = min(self._params.reverse_speed_mps, self._speed_limits.reverse)
+        seen = self._collision.reverse_share(pose, reverse)
+        return SpeedCap(self._speed_limits.forward, seen * reverse)
 
     def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
         """Scale the command to what the obstacles allow, at worst a stop."""
@@ -224,6 +243,7 @@ class PredictiveFollower:
             left,
             self._clearance,
             self._scale,
+            LimitedBy.COLLISION_CHECK if self._scale < 1.0 else LimitedBy.NONE,
         )
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from navette.geometry import Pose2
 from navette.navigation.control.command_gate import FRESH, InputAges
 from navette.navigation.control.limits import VelocityCommand
-from navette.navigation.control.states import ControlState
+from navette.navigation.control.states import ControlState, LimitedBy
 
 FARTHEST_M = 1e8  # from the map's origin; UTM northings reach 1e7
 _FASTEST = 1e3  # m/s, rad/s
@@ -49,6 +49,7 @@ class FollowerOutput(NamedTuple):
     distance_left_m: float
     clearance_m: float
     collision_scale: float  # share of the command that the obstacles allow
+    limited_by: LimitedBy = LimitedBy.NONE
 
 
 PAUSED = FollowerOutput(
@@ -69,3 +70,4 @@ class StepDecision(NamedTuple):
     command: VelocityCommand
     state: ControlState
     brakes: bool = False  # slow down on the present arc instead of steering
+    limited_by: LimitedBy = LimitedBy.NONE

@@ -13,6 +13,7 @@ class ControlState(StrEnum):
     REACHED = "reached"
     MISSED_GOAL = "missed_goal"
     BLOCKED = "blocked"
+    STALLED = "stalled"
     OFF_PATH = "off_path"
     STALE_ODOMETRY = "stale_odometry"
     STALE_COSTMAP = "stale_costmap"
@@ -43,3 +44,16 @@ _RESTING = (
     ControlState.UNKNOWN_FRAME,
     ControlState.METHOD_FAILED,
 )
+
+
+class LimitedBy(StrEnum):
+    """What keeps a moving robot below its cruise speed, as published."""
+
+    NONE = ""
+    ACCELERATION = "acceleration"
+    BEND = "bend"
+    CLEARANCE = "clearance"
+    COLLISION_CHECK = "collision_check"
+    HEADING = "heading_error"
+    LATE_DATA = "late_data"
+    PATH_END = "path_end"

@@ -11,7 +11,11 @@ from navette.navigation.grids.clearance import (
     pose_clearance,
     pose_is_clear,
 )
-from navette.navigation.grids.collision_check import CollisionCheck, MovingBody
+from navette.navigation.grids.collision_check import (
+    NONE_UNSEEN,
+    CollisionCheck,
+    MovingBody,
+)
 from navette.navigation.grids.compare import Changes, compare
 from navette.navigation.grids.distance import distance_field
 from navette.navigation.grids.evidence import accumulate
@@ -37,6 +41,12 @@ from navette.navigation.grids.obstacles import (
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
+from navette.navigation.grids.unseen import (
+    Layer,
+    StartArea,
+    unseen_mask,
+    unseen_points,
+)
 
 __all__ = [
     "GridSpec",
@@ -77,6 +87,11 @@ __all__ = [
     "Obstacles",
     "ObstacleTracker",
     "obstacle_points",
+    "NONE_UNSEEN",
+    "Layer",
+    "StartArea",
+    "unseen_mask",
+    "unseen_points",
     "grid_to_message",
     "grid_from_message",
 ]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids.exact_clearance import body_distance
+from navette.navigation.grids.exact_clearance import body_distance, signed_distance
 from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
@@ -22,6 +22,8 @@ _STEP_M = 0.05  # largest motion of a body point between predicted poses
 _SLACK_M = 0.02  # a body within the margin may come this much closer …
 _FLOOR_M = 0.02  # … but not below this
 _MAX_POSES = 400
+_TOUCH_M = 1e-3  # changes of distance that are none
+NONE_UNSEEN = np.empty((0, 2))
 _COSTMAP_AGE_S = 0.6  # obstacles are gathered once and used until the next costmap
 
 
@@ -57,11 +59,22 @@ class CollisionCheck:
         self._horizon = max(body.horizon_m, body.margin_m + 0.1)
         self._points = np.empty((0, 2))
         self._half_cell = 0.0
+        self._unseen = NONE_UNSEEN
 
-    def set_obstacles(self, points: Array, half_cell: float) -> None:
-        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
+    def set_obstacles(
+        self, points: Array, half_cell: float, unseen: Array = NONE_UNSEEN
+    ) -> None:
+        """Store what the body keeps clear of; metres, map.
+
+        Args:
+            points: centres (N, 2) of obstacle cells.
+            half_cell: half the edge of their cells.
+            unseen: centres (M, 2) of cells that were never seen, which the body does
+                not cover in reverse.
+        """
         self._points = np.ascontiguousarray(points, np.float64)
         self._half_cell = half_cell
+        self._unseen = np.ascontiguousarray(unseen, np.float64)
 
     def reach(self, speed: float) -> float:
         """Return the distance (m) around the robot within which obstacles matter."""
@@ -93,12 +106,20 @@ class CollisionCheck:
         free, clearance = self._free(pose, v, omega, needed, side)
         if free >= needed:
             return Verdict(1.0, clearance)
-        root = math.sqrt(body.reaction_s**2 + 2 * brake * free)
-        return Verdict((root - body.reaction_s) / brake, clearance)
+        return Verdict(self._share(free, brake), clearance)
 
     def free_time(self, pose: Pose2, v: float, omega: float, span_s: float) -> float:
         """Return how long (s, ≤ ``span_s``) a constant motion stays clear."""
         return self._free(pose, v, omega, span_s)[0]
+
+    def reverse_share(self, pose: Pose2, speed: float) -> float:
+        """Return the share of a reverse ``speed`` (m/s) that unseen space allows."""
+        if not len(self._unseen):
+            return 1.0
+        brake = speed / self._body.deceleration_mps2
+        needed = self._body.reaction_s + brake / 2
+        free = self._seen_time(pose, -speed, 0.0, needed)
+        return 1.0 if free >= needed else self._share(free, brake)
 
     def turn_is_free(self, pose: Pose2, turn: float) -> bool:
         """Return whether turning in place by ``turn`` rad keeps the body clear."""
@@ -109,16 +130,21 @@ class CollisionCheck:
         """Return the clearance (m) of the body at ``pose``, at most the horizon."""
         return self._free(pose, 0.0, 0.0, 0.0)[1]
 
+    def _share(self, free: float, brake: float) -> float:
+        """Return k with ``k t_r + k² t_b / 2`` equal to the free time of the motion."""
+        reaction = self._body.reaction_s
+        return (math.sqrt(reaction**2 + 2 * brake * free) - reaction) / brake
+
     def _free(
         self, pose: Pose2, v: float, omega: float, duration: float, side: float = 0.0
     ) -> tuple[float, float]:
-        travel = (math.hypot(v, side) + abs(omega) * self._radius) * duration
-        poses = min(_MAX_POSES, math.ceil(travel / _STEP_M))
+        if len(self._unseen) and (v < 0.0 or side != 0.0):
+            duration = self._seen_time(pose, v, omega, duration, side)
         return free_motion(
             self._points,
             self._outline,
             np.array((pose.x, pose.y, pose.yaw, v, omega, side, duration)),
-            poses,
+            self._poses(v, omega, duration, side),
             np.array(
                 (
                     self._radius,
@@ -128,6 +154,36 @@ class CollisionCheck:
                 )
             ),
         )
+
+    def _seen_time(
+        self, pose: Pose2, v: float, omega: float, duration: float, side: float = 0.0
+    ) -> float:
+        """Return how long (s) the motion stays in space that was seen."""
+        return seen_motion(
+            self._unseen,
+            self._outline,
+            np.array((pose.x, pose.y, pose.yaw, v, omega, side, duration)),
+            self._poses(v, omega, duration, side),
+            self._radius,
+        )
+
+    def _poses(self, v: float, omega: float, duration: float, side: float) -> int:
+        travel = (math.hypot(v, side) + abs(omega) * self._radius) * duration
+        return min(_MAX_POSES, math.ceil(travel / _STEP_M))
+
+
+@kernel(signature="UniTuple(float64, 3)(float64[::1], float64)")
+def _moved(motion: Array, t: float) -> tuple[float, float, float]:
+    """Return the pose after ``t`` seconds of a motion, see :func:`free_motion`."""
+    yaw, v, omega, side = motion[2], motion[3], motion[4], motion[5]
+    turned = omega * t
+    half = turned / 2
+    # Chord of the arc: v t · sin(θ/2)/(θ/2), in the direction of half the turn.
+    chord = t * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
+    cos, sin = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
+    x = motion[0] + v * cos - side * sin
+    y = motion[1] + v * sin + side * cos
+    return x, y, yaw + turned
 
 
 @kernel(
@@ -149,7 +205,7 @@ def free_motion(
     Returns:
         Seconds of free motion, and the present clearance (m, ≤ horizon).
     """
-    x, y, yaw, v, omega, side, duration = motion
+    x, y, yaw, duration = motion[0], motion[1], motion[2], motion[6]
     radius, half_cell, margin, horizon = body
     reach = radius + half_cell
     far = half_cell + horizon
@@ -159,15 +215,42 @@ def free_motion(
         # Within the margin: motion away and along is allowed, closer almost not.
         least = max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - 1e-3
     for i in range(1, poses + 1):
-        t = duration * i / poses
-        turned = omega * t
-        half = turned / 2
-        # Chord of the arc: v t · sin(θ/2)/(θ/2), in the direction of half the turn.
-        chord = t * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
-        cos, sin = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
-        px, py = x + v * cos - side * sin, y + v * sin + side * cos
+        px, py, pyaw = _moved(motion, duration * i / poses)
         near = half_cell + least + _SLACK_M
-        there = body_distance(points, outline, px, py, yaw + turned, reach, near)
+        there = body_distance(points, outline, px, py, pyaw, reach, near)
         if there - half_cell < least:
             return duration * (i - 1) / poses, now
     return duration, now
+
+
+@kernel(
+    signature="float64(float64[:, ::1], float64[:, ::1], float64[::1], int64, float64)",
+)
+def seen_motion(
+    unseen: Array, outline: Array, motion: Array, poses: int, radius: float
+) -> float:
+    """Return how long (s) a motion covers none of the points ``unseen`` (N, 2).
+
+    A point under the edge of the body may stay there, but not get further under it.
+    Other arguments as in :func:`free_motion`.
+    """
+    duration = motion[6]
+    first = poses + 1
+    for k in range(unseen.shape[0]):
+        least = np.inf
+        for i in range(first):
+            x, y, yaw = motion[0], motion[1], motion[2]
+            if i:
+                x, y, yaw = _moved(motion, duration * i / poses)
+            dx, dy = unseen[k, 0] - x, unseen[k, 1] - y
+            if dx * dx + dy * dy >= radius * radius:
+                continue
+            c, s = math.cos(yaw), math.sin(yaw)
+            there = signed_distance(outline, c * dx + s * dy, c * dy - s * dx)
+            if i == 0:
+                least = there - _TOUCH_M
+            elif there < min(0.0, least):
+                first = i
+                break
+    free: float = duration if first > poses else duration * (first - 1) / poses
+    return free

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.navigation.grids.alignment import placed
 from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
 from navette.storage.kernels import kernel
 
 
@@ -19,6 +21,10 @@ class RobotPoses(Protocol):
     """Poses of the robot over time, in the map frame."""
 
     map_frame: str
+
+    @property
+    def first(self) -> Pose2 | None:
+        """Return map_T_base where the robot was put down."""
 
     def predicted_at(self, stamp_ns: int) -> Pose2 | None:
         """Return map_T_base at a stamp, interpolated or predicted."""
@@ -31,19 +37,39 @@ class RobotPoses(Protocol):
 
 
 class Obstacles(NamedTuple):
-    """Centres (N, 2) of obstacle cells in the map, and half a cell's edge; metres."""
+    """What a moving body keeps clear of; metres, map.
+
+    Attributes:
+        points: centres (N, 2) of obstacle cells.
+        half_cell: half the edge of their cells.
+        unseen: centres (M, 2) of cells near the body that neither map nor costmap has
+            seen.
+    """
 
     points: NDArray[np.float64]
     half_cell: float
+    unseen: NDArray[np.float64]
 
 
 class ObstacleTracker:
-    """Places the newest costmap in the map once the pose at its stamp is available."""
+    """Places the newest costmap in the map once the pose at its stamp is available.
 
-    def __init__(self, poses: RobotPoses) -> None:
+    Args:
+        poses: poses of the robot.
+        footprint: outline of the body.
+        hand_m: width of the space around the body, where the robot was put down, that
+            counts as free.
+    """
+
+    def __init__(self, poses: RobotPoses, footprint: Footprint, hand_m: float) -> None:
         self._poses = poses
+        self.configure(footprint, hand_m)
         self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
         self.reset()
+
+    def configure(self, footprint: Footprint, hand_m: float) -> None:
+        """Replace the outline and the width."""
+        self._footprint, self._hand_m = footprint, hand_m
 
     def reset(self) -> None:
         """Forget all costmaps and the map."""
@@ -65,8 +91,16 @@ class ObstacleTracker:
         """
         self._map = grid_from_message(msg)
 
-    def place(self, now_ns: int, lethal_cost: int, reach_m: float) -> Obstacles | None:
+    def place(
+        self, now_ns: int, lethal_cost: int, reach_m: float, unseen_reach_m: float
+    ) -> Obstacles | None:
         """Return the obstacles within reach of the robot; None if there is no news.
+
+        Args:
+            now_ns: time of the node's clock.
+            lethal_cost: value from which a cell is an obstacle.
+            reach_m: radius of the region of the obstacles.
+            unseen_reach_m: radius of the region in which unseen space matters.
 
         Raises:
             InvalidValueError: the costmap is invalid; it is dropped.
@@ -84,6 +118,7 @@ class ObstacleTracker:
             obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m
         )
         points = nearby(cells, spec, map_T_frame)
+        here = Layer(cells, placed(spec, map_T_frame))
         resolution = spec.resolution
         if self._map is not None:
             known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
@@ -91,7 +126,19 @@ class ObstacleTracker:
             points = np.concatenate([points, known[unseen]])
             resolution = max(resolution, self._map[1].resolution)
         self.placed_ns = self._costmap_ns
-        return Obstacles(points, resolution / 2)
+        return Obstacles(
+            points, resolution / 2, self._unseen(here, around, unseen_reach_m)
+        )
+
+    def _unseen(
+        self, here: Layer, around: Pose2, reach_m: float
+    ) -> NDArray[np.float64]:
+        """Return the cells near the body that neither map nor costmap has seen."""
+        layers = (here,) if self._map is None else (Layer(*self._map), here)
+        first = self._poses.first
+        assert first is not None, "the pose is known"
+        start = StartArea.of(self._footprint, first, self._hand_m)
+        return unseen_points(layers, start, around, reach_m)
 
     def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
         """Return map_T_frame of the costmap at its stamp."""

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navette.geometry import Pose2
 from navette.navigation.grids import make_obstacles, make_outline
@@ -50,7 +51,10 @@ class DetourResult:
 
 
 class DetourPlanner:
-    """Detour planner on one grid for one body."""
+    """Detour planner on one grid for one body.
+
+    ``unseen`` (H, W) is 1 in cells that the body does not enter in reverse.
+    """
 
     def __init__(
         self,
@@ -58,8 +62,10 @@ class DetourPlanner:
         body: BodyShape,
         params: PlannerParams,
         router: GridRouter,
+        unseen: NDArray[np.uint8],
     ) -> None:
         self.grid, self.body, self.params, self.router = grid, body, params, router
+        self._unseen = unseen
         step = min(0.3, max(0.2 * body.circumscribed_m, 2 * grid.spec.resolution))
         self.motions = Motions(
             step_m=step,
@@ -128,6 +134,7 @@ class DetourPlanner:
             outside_m=grid.outside_m,
             obstacles=make_obstacles(grid.obstacles, grid.spec),
             outline=make_outline(self.body.footprint),
+            unseen=self._unseen,
         )
         goal = lattice.LatticeGoal(
             target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL

@@ -21,8 +21,10 @@ from navette.navigation.grids import (
     GridSpec,
     ObstacleGrid,
     Outline,
+    distance_field,
     grid_frame,
     make_body,
+    make_obstacles,
 )
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
@@ -59,6 +61,7 @@ class LatticeWorld:
         outside_m: distance to obstacles assumed outside the grid.
         obstacles: the lethal cells, for exact clearances in tight places.
         outline: outline of the body.
+        unseen: (H, W) uint8, 1 = cells that the body does not enter in reverse.
     """
 
     distance_m: NDArray[np.float32]
@@ -71,6 +74,7 @@ class LatticeWorld:
     outside_m: float
     obstacles: ObstacleGrid
     outline: Outline
+    unseen: NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -137,13 +141,20 @@ def search(
 
 
 def _scene(world: LatticeWorld) -> LatticeScene:
+    frame, resolution = grid_frame(world.spec), world.spec.resolution
     return LatticeScene(
-        DistanceGrid(world.distance_m, grid_frame(world.spec), float(world.outside_m)),
+        DistanceGrid(world.distance_m, frame, float(world.outside_m)),
         world.factor,
         np.ascontiguousarray(world.guide),
         make_body(world.body),
         world.obstacles,
         world.outline,
+        make_obstacles(world.unseen, world.spec),
+        DistanceGrid(
+            distance_field(world.unseen, resolution, 2 * world.outline.radius_m),
+            frame,
+            float(world.outside_m),
+        ),
         float(world.margin_m),
         float(world.comfort_m),
     )

@@ -54,6 +54,8 @@ class LatticeScene(NamedTuple):
     body: Body
     obstacles: ObstacleGrid
     outline: Outline
+    unseen: ObstacleGrid
+    unseen_distance: DistanceGrid
     margin_m: float
     comfort_m: float
 
@@ -235,7 +237,23 @@ def _fits(
             continue
         if _exact(scene, px, py, pyaw, needed_m) < needed_m:
             return False
-    return True
+    return moves.directions[m] >= 0 or _is_seen(scene, moves, m, x, y, yaw)
+
+
+@kernel
+def _is_seen(scene: Any, moves: Any, m: int, x: float, y: float, yaw: float) -> bool:
+    """Return whether the body stays in space that was seen at the end of move ``m``."""
+    end = moves.counts[m] - 1
+    dx, dy = moves.offsets[m, end, 0], moves.offsets[m, end, 1]
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    px, py = x + cos * dx - sin * dy, y + sin * dx + cos * dy
+    pyaw = yaw + moves.offsets[m, end, 2]
+    if pose_is_clear(scene.unseen_distance, scene.body, px, py, pyaw, 0.0):
+        return True
+    # A cell under the edge of the body is part of the border, not entered.
+    border = -0.5 * scene.unseen.frame.resolution
+    depth: float = exact_clearance(scene.unseen, scene.outline, px, py, pyaw, 0.0)
+    return bool(depth >= border)
 
 
 @kernel

@@ -159,6 +159,18 @@ class Navigator:
         """Note that obstacles stop the controller; the next step plans from there."""
         self._blocked = True
 
+    def note_stalled(self, now_ns: int) -> None:
+        """Note that something invisible stops the robot; plan around that place."""
+        if self._progress is None or now_ns - self._blocked_ns < _BLOCKED_PERIOD_NS:
+            return
+        self._checker.spend()
+        self._avoided.note_stuck(self._progress.ahead, self._front_m(), gap_m=0.0)
+        if self._checker.exhausted:
+            self._finish(Outcome.STUCK)
+        else:
+            self.avoid_place()
+            self._blocked = True
+
     def take_path(self) -> Poses | None:
         """Return poses (N, 3) to publish, empty = stop; None if unchanged."""
         path, self._to_publish = self._to_publish, None

@@ -54,6 +54,8 @@ _check_point = input_check(topics.GOAL_POINT.type)
 _STATUS_DELAY_NS = 200_000_000
 # Status of a controller that obstacles stop.
 _BLOCKED = "blocked"
+# Status of a controller whose robot does not move as commanded.
+_STALLED = "stalled"
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY,)
 
@@ -165,6 +167,9 @@ class PlannerNode(StageNode):
             self._drop_step()
             self._navigator.fail(Outcome.METHOD_FAILED)
             self._publish_news()
+        elif msg.message == _STALLED and self._navigator.has_path:
+            self._navigator.note_stalled(self._now_ns)
+            self.on_timer()
         elif msg.message == _BLOCKED and self._navigator.has_path:
             self._when_stepped(lambda: self._navigator.note_blocked())
             self.on_timer()
@@ -190,6 +195,7 @@ class PlannerNode(StageNode):
         if not self._tracker.update(msg):
             return
         self._odometry_ns = self._now_ns
+        self._navigator.planner.put_down_at = self._tracker.first
         robot = self._robot()
         if robot is None or self._stepping is not None:
             return

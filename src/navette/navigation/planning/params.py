@@ -98,6 +98,14 @@ class PlannerParams(Params):
     reverse_factor: float = param(
         1.5, "cost of a metre in reverse, in metres forward", at_least=1.0
     )
+    blind_reverse_m: float = param(
+        0.1,
+        "how far the body may leave its outline, where the robot was put down, into "
+        "space behind it that no beam has seen, backing up and turning",
+        unit="m",
+        at_least=0.0,
+        at_most=10.0,
+    )
     max_expansions: int = param(
         40_000,
         "largest number of poses that the search with headings expands",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import GridSpec, Layer, StartArea, unseen_mask
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
 from navette.navigation.planning.goals import nearest_reachable
@@ -72,6 +72,8 @@ class Planner:
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
+        #: Pose where the robot was put down; None: that of the start of each plan.
+        self.put_down_at: Pose2 | None = None
 
     def copy(self) -> "Planner":
         """Return a planner with the same map that changes independently."""
@@ -82,6 +84,7 @@ class Planner:
     def with_params(self, params: PlannerParams) -> "Planner":
         """Return a planner with other parameters on the same map."""
         other = Planner(params)
+        other.put_down_at = self.put_down_at
         if self._map is not None:
             other.set_map(*self._map)
         return other
@@ -102,7 +105,8 @@ class Planner:
         other.set_map(np.zeros(spec.shape, np.int8), spec)
         start, goal = Pose2(4 * reach, 5 * reach, 0.0), Goal(6 * reach, 5.1 * reach)
         other.plan(start, goal)
-        DetourPlanner(other.grid(), other.body, self.params, other.router).plan(
+        unseen = other._unseen(start)
+        DetourPlanner(other.grid(), other.body, self.params, other.router, unseen).plan(
             start, Target(goal.x, goal.y, None, reach), None
         )
         nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
@@ -213,14 +217,22 @@ class Planner:
         fitting = self._cut_to_fit(grid, start, goal, route)
         if fitting is not None and not self._ends_cramped(grid, fitting):
             return self._planned(goal, fitting, margin_m, 0)
-        detour = DetourPlanner(grid, self.body, self.params, self.router).plan(
-            start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route
-        )
+        detour = DetourPlanner(
+            grid, self.body, self.params, self.router, self._unseen(start)
+        ).plan(start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route)
         poses = fitting if detour.poses is None else detour.poses
         if poses is None:
             why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
             return Plan(why, expansions=detour.expansions)
         return self._planned(goal, poses, margin_m, detour.expansions)
+
+    def _unseen(self, start: Pose2) -> NDArray[np.uint8]:
+        """Return (H, W) 1 for the cells that the body does not enter in reverse."""
+        assert self._map is not None, "set_map comes first"
+        put_down_at = self.put_down_at or start
+        hand_m = self.params.blind_reverse_m
+        area = StartArea.of(self.footprint, put_down_at, hand_m)
+        return unseen_mask(Layer(*self._map), area)
 
     def _ends_cramped(self, grid: PlanningGrid, route: Poses) -> bool:
         """Return whether a robot that stops slightly late would be too close."""

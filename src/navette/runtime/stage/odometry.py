@@ -16,6 +16,8 @@ from navette.runtime.time import stamp_to_ns
 
 _HERE = Pose2(0.0, 0.0, 0.0)
 _LONGEST_PREDICTION_S = 0.25
+# A pose this far from the one before: the robot was carried to another place.
+_CARRIED_M = 1.0
 
 
 class PoseTracker:
@@ -52,6 +54,7 @@ class PoseTracker:
         self._history: deque[tuple[int, Pose2]] = deque()
         self._velocity = (0.0, 0.0)
         self._side_speed = 0.0
+        self._first: Pose2 | None = None
         # Received only if odometry needs moving transforms.
         self._on_invalid = node.drop_input if isinstance(node, StageNode) else None
         self._listener = TransformListener(
@@ -65,6 +68,11 @@ class PoseTracker:
     def latest(self) -> Pose2 | None:
         """The newest map_T_base, or None."""
         return self._history[-1][1] if self._history else None
+
+    @property
+    def first(self) -> Pose2 | None:
+        """The map_T_base where the robot was put down, or None."""
+        return self._first
 
     @property
     def stamp_ns(self) -> int | None:
@@ -178,6 +186,8 @@ class PoseTracker:
                 history.pop()
             else:
                 history.clear()  # time jumped backward
+        if not history or history[-1][1].distance_to(map_T_base) > _CARRIED_M:
+            self._first = map_T_base
         history.append((stamp_ns, map_T_base))
         while history[0][0] < stamp_ns - self._history_ns:
             history.popleft()

@@ -35,6 +35,7 @@ class StatusReporter:
 
     def __init__(self, node: StageNode, topic: str) -> None:
         self._status = DiagnosticStatus(name=node.get_name())
+        self._cause = ""
         self._publish = partial(node.publish, topic)
         self._timer = node.create_timer(_PERIOD_S, self._repeat)
 
@@ -43,11 +44,16 @@ class StatusReporter:
         """The last reported state; empty before the first report."""
         return self._status.message
 
-    def report(self, state: str, level: bytes = OK, **details: Any) -> None:
-        """Set the state; ``details`` become key-value pairs."""
+    def report(
+        self, state: str, level: bytes = OK, *, cause: str = "", **details: Any
+    ) -> None:
+        """Set the state; ``details`` become key-value pairs.
+
+        A change of ``cause`` is published at once, as one of the state is.
+        """
         status = self._status
-        is_new = state != status.message or level != status.level
-        status.message, status.level = state, level
+        is_new = (state, level, cause) != (status.message, status.level, self._cause)
+        status.message, status.level, self._cause = state, level, cause
         status.values = [
             KeyValue(key=key, value=_text(value)) for key, value in details.items()
         ]

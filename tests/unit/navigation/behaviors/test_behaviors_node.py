@@ -32,10 +32,15 @@ FRONT_M = 0.254  # from the axle to the bumper
 
 
 class Room:
-    """A robot at the origin of a room with a wall 1.9 m ahead and 4 m behind."""
+    """A robot at the origin of a room with a wall 1.9 m ahead and 4 m behind.
 
-    def __init__(self, graph: GraphHarness) -> None:
+    Its lidar has not seen the space behind it, but it may back into it.
+    """
+
+    def __init__(self, graph: GraphHarness, blind_reverse_m: float = 10.0) -> None:
         self.graph = graph
+        blind = {"blind_reverse_m": blind_reverse_m}
+        graph.context.overrides.add("behaviors", blind, "test")
         world = World("room").add_walls((12.0, 12.0)).add_box((2.0, 0.0), (0.2, 8.0))
         scene = world.add_box((-4.1, 0.0), (0.2, 8.0)).scene()
         self.sim = graph.add(
@@ -113,6 +118,20 @@ def test_backup_drives_back_whatever_the_signs(room: Room) -> None:
         driven = [feedback.distance_traveled for feedback in probe.feedback]
         assert driven[-1] == pytest.approx(abs(metres), abs=0.03)
         assert driven == sorted(driven)
+
+
+def test_backup_stays_in_space_that_was_seen() -> None:
+    with GraphHarness() as graph:
+        room = Room(graph, blind_reverse_m=0.1)
+        probe = room.back_up(0.5)
+        result = room.finish(probe)
+        assert result.error_code == BackUp.Result.COLLISION_AHEAD
+        assert "unseen space" in result.error_msg
+        assert room.pose.x > -0.1
+        room.finish(room.send(Spin, "spin", target_yaw=2 * math.pi))
+        probe = room.back_up(0.5)
+        room.finish(probe)
+        assert probe.status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_drive_on_heading_goes_ahead_and_back(room: Room) -> None:

@@ -90,6 +90,39 @@ def test_passing_along_a_wall_closer_than_the_margin_is_allowed() -> None:
     assert check.check(ORIGIN, VelocityCommand(0.5, 0.5)).scale < 0.5
 
 
+def blind_behind(first_x: float) -> CollisionCheck:
+    """Unseen cells of 0.1 m behind the body, whose end is at x = -0.5."""
+    check = checker()
+    xs = first_x - 0.05 - 0.1 * np.arange(10)
+    cells = [(x, y) for x in xs for y in np.arange(-0.75, 0.8, 0.1)]
+    check.set_obstacles(np.empty((0, 2)), 0.05, np.array(cells))
+    return check
+
+
+def test_the_body_does_not_back_into_unseen_space() -> None:
+    check = blind_behind(-0.7)
+    # The nearest centres lie 0.25 m behind the body.
+    assert 1.0 <= check.free_time(ORIGIN, -0.2, 0.0, 5.0) <= 1.25
+    assert check.free_time(ORIGIN, 0.2, 0.0, 5.0) == 5.0
+    assert check.turn_is_free(ORIGIN, math.pi)
+    scale = check.check(ORIGIN, VelocityCommand(-1.0, 0.0)).scale
+    assert 0.2 < 0.2 * scale + scale**2 / 2 <= 0.25 + 1e-6
+    assert check.reverse_share(ORIGIN, 1.0) == pytest.approx(scale)
+
+
+def test_a_body_over_the_border_of_unseen_space_does_not_enter_further() -> None:
+    check = blind_behind(-0.48)
+    assert check.check(ORIGIN, VelocityCommand(-0.3, 0.0)).scale == 0.0
+    assert check.check(ORIGIN, VelocityCommand(0.3, 0.0)).scale == 1.0
+
+
+def test_reversing_along_unseen_space_is_allowed() -> None:
+    check = checker()
+    beside = [(x, 0.53) for x in np.arange(-3.0, 2.0, 0.1)]
+    check.set_obstacles(np.empty((0, 2)), 0.05, np.array(beside))
+    assert check.check(ORIGIN, VelocityCommand(-0.3, 0.0)).scale == 1.0
+
+
 def test_the_reach_covers_braking_from_the_speed() -> None:
     radius = BODY.circumscribed_radius
     assert checker().reach(1.0) > radius + 0.2 + 0.5 + 0.5

@@ -56,9 +56,10 @@ def test_commands_are_published_at_the_rate(world: World) -> None:
 def test_the_state_is_repeated_with_figures(world: World) -> None:
     world.send_path(STRAIGHT)
     world.graph.run_for(3.0)
-    details = {pair.key: float(pair.value) for pair in world.status.last.values}
-    assert 0.2 < details["speed_mps"] <= 0.5
-    assert 1.0 < details["distance_left_m"] < 2.5
+    details = {pair.key: pair.value for pair in world.status.last.values}
+    assert 0.2 < float(details["speed_mps"]) <= 0.5
+    assert 1.0 < float(details["distance_left_m"]) < 2.5
+    assert details["limited_by"] == ""
     assert len(world.status.messages) >= 6
 
 

@@ -58,6 +58,7 @@ def plan(
         outside_m=grid.outside_m,
         obstacles=make_obstacles(grid.obstacles, grid.spec),
         outline=make_outline(COURSE),
+        unseen=np.zeros(spec.shape, np.uint8),
     )
     return search(world, start, goal, MOTIONS, max_expansions=max_expansions)
 
@@ -139,6 +140,7 @@ def test_start_outside_is_refused() -> None:
         0.0,
         make_obstacles(np.zeros(spec.shape, np.uint8), spec),
         make_outline(COURSE),
+        np.zeros(spec.shape, np.uint8),
     )
     with pytest.raises(InvalidValueError, match="outside the grid"):
         search(world, Pose2(9, 9, 0), LatticeGoal(2, 2, 0.3), MOTIONS)

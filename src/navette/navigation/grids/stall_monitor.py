@@ -1,0 +1,131 @@
+"""Detect that the robot does not move as commanded: it pushes against something."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from navette.geometry import Pose2, angle_difference
+
+# First-order lag of a drive, applied to the command.
+_LAG_S = 0.15
+# Share of the commanded motion below which the robot does not move.
+_LEAST_SHARE = 0.2
+# Commanded motion within the time below which nothing can be concluded.
+_LEAST_M, _LEAST_RAD = 0.02, 0.1
+# A robot that stalled may try again in a direction when it has moved this far …
+_AWAY_M, _AWAY_RAD = 0.3, 1.0
+# … or after this time.
+_AGAIN_S = 10.0
+
+
+class _Step(NamedTuple):
+    dt: float
+    ahead: float  # commanded, m
+    moved: float  # measured in that direction, m
+    turn: float  # commanded, rad
+    turned: float  # measured in that direction, rad
+
+
+class _Motion(NamedTuple):
+    """Speed (m/s), turn rate (rad/s) and, of some drives, speed to the left (m/s)."""
+
+    speed: float
+    turn_rate: float
+    side: float = 0.0
+
+    def along(self, other: "_Motion") -> float:
+        """Return the product of the velocities."""
+        return self.speed * other.speed + self.side * other.side
+
+
+_REST = _Motion(0.0, 0.0)
+
+
+class StallMonitor:
+    """Compares commanded with measured motion over a short time.
+
+    Motions are speed (m/s), turn rate (rad/s) and, of some drives, speed to the left.
+
+    Args:
+        time_s: how long the robot must not have moved; 0: never stalled.
+    """
+
+    def __init__(self, time_s: float) -> None:
+        self._time_s = time_s
+        self._bump: tuple[Pose2, _Motion] | None = None
+        self._bump_age_s = 0.0
+        self.reset()
+
+    def reset(self) -> None:
+        """Restart: the robot was stopped or moved by someone else."""
+        self._steps: deque[_Step] = deque()
+        self._span_s = 0.0
+        self._expected = _REST
+
+    def update(
+        self, command: Sequence[float], pose: Pose2, measured: Sequence[float],
+        dt: float,
+    ) -> bool:  # fmt: skip
+        """Return whether the robot stalls.
+
+        Args:
+            command: motion commanded for the last ``dt`` seconds.
+            pose: of the robot.
+            measured: its motion.
+            dt: period.
+        """
+        self._bump_age_s += dt
+        if self._time_s == 0.0:
+            return False
+        given, found = _Motion(*command), _Motion(*measured)
+        share = min(1.0, dt / _LAG_S)
+        self._expected = wanted = _Motion(
+            *(old + share * (new - old)
+              for old, new in zip(self._expected, given, strict=True))
+        )  # fmt: skip
+        speed = math.hypot(wanted.speed, wanted.side)
+        moved = found.along(wanted) / speed if speed else 0.0
+        turned = math.copysign(1.0, wanted.turn_rate) * found.turn_rate
+        self._append(
+            _Step(dt, speed * dt, max(0.0, moved) * dt,
+                  abs(wanted.turn_rate) * dt, max(0.0, turned) * dt)
+        )  # fmt: skip
+        if not self._stands():
+            return False
+        self._bump, self._bump_age_s = (pose, given), 0.0
+        self.reset()
+        return True
+
+    def forbids(self, command: Sequence[float], pose: Pose2) -> bool:
+        """Return whether a command repeats the motion in which the robot stalled."""
+        if self._bump is None:
+            return False
+        where, bumped = self._bump
+        if (
+            self._bump_age_s > _AGAIN_S
+            or where.distance_to(pose) > _AWAY_M
+            or abs(angle_difference(where.yaw, pose.yaw)) > _AWAY_RAD
+        ):
+            self._bump = None
+            return False
+        given = _Motion(*command)
+        if bumped.along(bumped) == 0.0:
+            return given.along(given) == 0.0 and given.turn_rate * bumped.turn_rate > 0
+        return given.along(bumped) > 0.0
+
+    def _append(self, step: _Step) -> None:
+        self._steps.append(step)
+        self._span_s += step.dt
+        while self._span_s - self._steps[0].dt >= self._time_s - 1e-9:
+            self._span_s -= self._steps.popleft().dt
+
+    def _stands(self) -> bool:
+        if self._span_s < self._time_s - 1e-9:
+            return False
+        ahead = sum(step.ahead for step in self._steps)
+        if ahead >= _LEAST_M:
+            return sum(step.moved for step in self._steps) < _LEAST_SHARE * ahead
+        turn = sum(step.turn for step in self._steps)
+        turned = sum(step.turned for step in self._steps)
+        return turn >= _LEAST_RAD and turned < _LEAST_SHARE * turn
