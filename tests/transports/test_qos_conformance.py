@@ -266,7 +266,7 @@ def test_assertions_without_messages_keep_a_publisher_alive(ends: Ends) -> None:
     logged: list[str] = []
     ends.near.context.log.sinks.append(lambda record: logged.append(record.message))
     received: list[Any] = []
-    ends.far.context.graph.on_assertion(lambda *ends: received.append(ends))
+    ends.far.context.graph.on_assertion("/t", lambda *ends: received.append(ends))
     for count in (1, 2, 3):
         manual.publisher.assert_liveliness()
         if ends.over_zenoh:

@@ -67,16 +67,15 @@ class CallbackGroup:
         self.ready: deque[Any] | None = None
         #: Threads that run the callbacks; None: the thread that spins.
         self.threads: Threads | None = None
-        self._entities: list[Any] = []
+        self._entities: dict[Any, None] = {}
 
     def add_entity(self, entity: Any) -> None:
         """Add an entity whose callback belongs to this group."""
-        self._entities.append(entity)
+        self._entities[entity] = None
 
     def remove_entity(self, entity: Any) -> None:
         """Remove a destroyed entity."""
-        if entity in self._entities:
-            self._entities.remove(entity)
+        self._entities.pop(entity, None)
 
     def has_entity(self, entity: Any) -> bool:
         return entity in self._entities

@@ -32,7 +32,7 @@ class ExternalShutdownException(NavetteError):
     """The context was shut down during a spin."""
 
 
-class InvalidHandle(NavetteError):
+class InvalidHandle(NavetteError, RuntimeError):
     """A publisher or subscription was used after it was destroyed."""
 
 

@@ -45,6 +45,26 @@ class GraphEvent(Generic[P]):
             callback(*args, **kwargs)
 
 
+class TopicEvent(Generic[P]):
+    """An event at one topic; calling it registers a callback for a topic.
+
+    With thousands of topics, a change at one concerns few endpoints.
+    """
+
+    def __init__(self) -> None:
+        self._events: dict[str, GraphEvent[P]] = {}
+
+    def __call__(self, topic: str, callback: Callable[P, object]) -> Callable[[], None]:
+        """Register a callback; return a function that removes it, once."""
+        return self._events.setdefault(topic, GraphEvent())(callback)
+
+    def report(self, topic: str, *args: P.args, **kwargs: P.kwargs) -> None:
+        """Run the callbacks of the topic."""
+        event = self._events.get(topic)
+        if event is not None:
+            event.report(*args, **kwargs)
+
+
 class Graph(TransportObserver):
     """Nodes and endpoints that the context's transports have discovered."""
 
@@ -56,19 +76,19 @@ class Graph(TransportObserver):
         #: A node or endpoint was added or removed.
         self.on_change = GraphEvent[[]]()
         #: A publisher and a subscription matched (True) or stopped matching (False).
-        self.on_match = GraphEvent[[Endpoint, Endpoint, bool]]()
+        self.on_match = TopicEvent[[Endpoint, Endpoint, bool]]()
         #: A publisher and a subscription do not match, because of these policies.
-        self.on_incompatible = GraphEvent[
+        self.on_incompatible = TopicEvent[
             [Endpoint, Endpoint, tuple[QoSPolicyKind, ...]]
         ]()
         #: A local endpoint and a remote endpoint of its topic differ in type.
-        self.on_incompatible_type = GraphEvent[[Endpoint, Endpoint]]()
+        self.on_incompatible_type = TopicEvent[[Endpoint, Endpoint]]()
         #: A local subscription lost this number of samples.
-        self.on_lost = GraphEvent[[Endpoint, int]]()
+        self.on_lost = TopicEvent[[Endpoint, int]]()
         #: A publisher's lease was renewed (True) or has expired (False).
         self.on_liveliness = GraphEvent[[Endpoint, bool]]()
         #: A remote publisher asserted its liveliness to a local subscription.
-        self.on_assertion = GraphEvent[[Endpoint, Endpoint]]()
+        self.on_assertion = TopicEvent[[Endpoint, Endpoint]]()
         #: Gids of the publishers with manual liveliness and a valid lease.
         self.manually_alive: set[bytes] = set()
         self._gids = itertools.count(1)
@@ -112,13 +132,13 @@ class Graph(TransportObserver):
         self.on_change.report()
 
     def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        self.on_match.report(publisher, subscription, True)
+        self.on_match.report(publisher.topic, publisher, subscription, True)
 
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        self.on_match.report(publisher, subscription, False)
+        self.on_match.report(publisher.topic, publisher, subscription, False)
 
     def asserted(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        self.on_assertion.report(publisher, subscription)
+        self.on_assertion.report(publisher.topic, publisher, subscription)
 
     def report_liveliness(self, publisher: Endpoint, *, alive: bool) -> None:
         """Record and report that a publisher's lease was renewed or has expired."""
@@ -134,13 +154,13 @@ class Graph(TransportObserver):
         subscription: Endpoint,
         policies: tuple[QoSPolicyKind, ...],
     ) -> None:
-        self.on_incompatible.report(publisher, subscription, policies)
+        self.on_incompatible.report(publisher.topic, publisher, subscription, policies)
 
     def message_lost(self, subscription: Endpoint, count: int) -> None:
-        self.on_lost.report(subscription, count)
+        self.on_lost.report(subscription.topic, subscription, count)
 
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
-        self.on_incompatible_type.report(local, remote)
+        self.on_incompatible_type.report(local.topic, local, remote)
 
     def nodes(self) -> list[NodeInfo]:
         """Return local nodes, then remote nodes; equal names are listed repeatedly."""

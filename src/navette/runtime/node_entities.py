@@ -30,7 +30,7 @@ class NodeEntities:
         self.remapper = remapper
         self.full_name = full_node_name(remapper.node_name, remapper.namespace)
         self.is_destroyed = False
-        self._entities: list[Any] = []
+        self._entities: dict[Any, None] = {}  # in the order of creation
         self._groups: list[CallbackGroup] = []
         self._is_held = True
         self._threads: Threads | None = None
@@ -66,15 +66,14 @@ class NodeEntities:
             group.run_in(None)
 
     def add(self, entity: Any) -> None:
-        self._entities.append(entity)
+        self._entities[entity] = None
         group = getattr(entity, "group", None)
         if group is not None:
             group.add_entity(entity)
 
     def forget(self, entity: Any) -> None:
         """Remove an entity that was destroyed."""
-        if entity in self._entities:
-            self._entities.remove(entity)
+        self._entities.pop(entity, None)
         group = getattr(entity, "group", None) or getattr(
             entity, "callback_group", None
         )

@@ -60,12 +60,12 @@ class EndpointWatch:
         self._leases: dict[bytes, Lease] = {}
         # Remote endpoints match and unmatch in another thread than local ones.
         self._counting = threading.Lock()
-        graph = context.graph
+        graph, topic = context.graph, endpoint.topic
         self._unsubscribe = [
-            graph.on_incompatible(self._on_incompatible),
-            graph.on_incompatible_type(self._on_incompatible_type),
-            graph.on_lost(self._on_lost),
-            graph.on_match(self._on_match),
+            graph.on_incompatible(topic, self._on_incompatible),
+            graph.on_incompatible_type(topic, self._on_incompatible_type),
+            graph.on_lost(topic, self._on_lost),
+            graph.on_match(topic, self._on_match),
         ]
         self._watch_deadline()
         self._watch_liveliness()
@@ -135,7 +135,9 @@ class EndpointWatch:
             if self._callbacks.liveliness is not None:
                 self._view = LivelinessView(graph, self._notify_liveliness)
                 self._unsubscribe.append(graph.on_liveliness(self._on_liveliness))
-                self._unsubscribe.append(graph.on_assertion(self._on_assertion))
+                self._unsubscribe.append(
+                    graph.on_assertion(self._endpoint.topic, self._on_assertion)
+                )
         elif self._endpoint.qos.asserts_itself:
             self._lease = Lease(self._endpoint, graph, loop, self._notify_liveliness)
 

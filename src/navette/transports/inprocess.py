@@ -152,6 +152,7 @@ class InProcessTransport(Transport):
     def __init__(self) -> None:
         #: By name and type.
         self._topics: dict[tuple[str, str], _Topic] = {}
+        self._types: dict[str, list[str]] = {}  # of each topic
         self._observers: list[TransportObserver] = []
         self._lock = threading.RLock()
         self._services = ServiceTable(self._lock, self._changed)
@@ -253,14 +254,15 @@ class InProcessTransport(Transport):
         if topic is None:
             self._check_type(endpoint)
             topic = self._topics[_key(endpoint)] = _Topic()
+            self._types.setdefault(endpoint.topic, []).append(endpoint.type_name)
         return topic
 
     def _check_type(self, endpoint: Endpoint) -> None:
         """Raise if the topic has another type, without an endpoint of this one."""
         other = {
-            type_name: topic
-            for (name, type_name), topic in self._topics.items()
-            if name == endpoint.topic and type_name not in endpoint.other_types
+            type_name: self._topics[endpoint.topic, type_name]
+            for type_name in self._types.get(endpoint.topic, ())
+            if type_name not in endpoint.other_types
         }
         for type_name, topic in other.items():
             nodes = sorted({port.endpoint.node_full_name for port in topic.ports()})
@@ -289,6 +291,10 @@ class InProcessTransport(Transport):
     def _remove_if_empty(self, endpoint: Endpoint, topic: _Topic) -> None:
         if not topic.publishers and not topic.subscriptions:
             del self._topics[_key(endpoint)]
+            types = self._types[endpoint.topic]
+            types.remove(endpoint.type_name)
+            if not types:
+                del self._types[endpoint.topic]
 
     def _changed(self) -> None:
         for observer in self._observers:
