@@ -41,6 +41,8 @@ DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 
 # Costmap, mapping, planning, control
 COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
+COSTMAP_POINTS = StackTopic("/costmap/points", "sensor_msgs/msg/PointCloud2")
+MAP_POINTS = StackTopic("/map/points", "sensor_msgs/msg/PointCloud2", 1, True)
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
 LOCAL_COSTMAP = StackTopic(
     "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True

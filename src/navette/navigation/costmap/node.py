@@ -16,7 +16,7 @@ from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.costmap.scan_costmap import PlanarScan
-from navette.navigation.grids import grid_to_message
+from navette.navigation.grids import grid_to_message, points_to_message
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
 from navette.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
@@ -36,6 +36,11 @@ class CostmapNode(StageNode):
         ),
     )
     OUTPUTS: ClassVar = (
+        Output.of(
+            topics.COSTMAP_POINTS,
+            "where the beams ended, more exact than the costmap's cells",
+            rate_hz=10.0,
+        ),
         Output.of(
             topics.COSTMAP,
             "costs around the sensor",
@@ -81,6 +86,10 @@ class CostmapNode(StageNode):
             return
         stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id
+        hits = self._costmap.hits(scan)
+        if hits is not None:
+            points = points_to_message(hits, frame_id, stamp_ns)
+            self.publish(topics.COSTMAP_POINTS.name, points)
         message = grid_to_message(cells, self._costmap.spec, frame_id, stamp_ns)
         self._newest = message
         self.publish(topics.COSTMAP.name, message)

@@ -72,6 +72,9 @@ class OwnCostmap:
         returned = own_call(self._name, self._method.costmap, arrays, self.spec)
         return checked_cells(self._name, returned, self.spec.shape)
 
+    def hits(self, scan: PlanarScan) -> None:
+        """Return None: the obstacles are the cells that the method returns."""
+
     def warm_up(self) -> None:
         """Do nothing: the user's method is called with scans only."""
 

@@ -102,6 +102,14 @@ class ScanCostmap:
             )
         return inflate(cost, self._table, raise_unknown=False)
 
+    def hits(self, scan: PlanarScan) -> NDArray[np.float64]:
+        """Return where the beams of a scan ended (N, 2), m, within the costmap."""
+        half = self.spec.width * self.spec.resolution / 2
+        ranges = scan.ranges
+        hit = (ranges > scan.range_min) & (ranges < scan.range_max)
+        points = self._directions_of(scan)[hit] * ranges[hit, None]
+        return points[(np.abs(points) < half).all(axis=1)]
+
     def warm_up(self) -> None:
         """Load or compile the kernels before the first scan."""
         self.build(PlanarScan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))

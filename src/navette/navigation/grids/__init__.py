@@ -30,6 +30,11 @@ from navette.navigation.grids.exact_clearance import (
     signed_distance,
 )
 from navette.navigation.grids.footprint_cells import cells_in_footprint
+from navette.navigation.grids.hit_points import (
+    HitPoints,
+    points_from_message,
+    points_to_message,
+)
 from navette.navigation.grids.inflation import cost_table, inflate
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message, grid_to_message
@@ -41,6 +46,7 @@ from navette.navigation.grids.obstacles import (
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
+from navette.navigation.grids.sub_cells import mark_points, point_radius, points_of
 from navette.navigation.grids.unseen import (
     Layer,
     StartArea,
@@ -92,6 +98,12 @@ __all__ = [
     "StartArea",
     "unseen_mask",
     "unseen_points",
+    "HitPoints",
+    "points_to_message",
+    "points_from_message",
+    "mark_points",
+    "points_of",
+    "point_radius",
     "grid_to_message",
     "grid_from_message",
 ]

@@ -37,6 +37,7 @@ def accumulate(
     hit: float,
     miss: float,
     limit: float,
+    lethal_cells: NDArray[np.int64] | None = None,
 ) -> None:
     """Add the evidence of one grid to a field of log odds of occupancy.
 
@@ -51,6 +52,8 @@ def accumulate(
         hit: log odds added, > 0.
         miss: log odds added, < 0.
         limit: the field is clipped to ±limit, so that it can follow changes.
+        lethal_cells: (M, 2) the cells that are hit; see
+            :func:`navette.navigation.grids.merge`.
 
     Raises:
         InvalidValueError: weights of the wrong sign, or arrays that do not match
@@ -63,14 +66,23 @@ def accumulate(
     field = output_array("log_odds", log_odds, np.float32, target_spec.shape)
     cells = grid_array("source", source, np.int8, source_spec)
     weights = _Weights(np.float32(hit), np.float32(miss), np.float32(limit))
-    _accumulate_kernel(field, cells, align(target_spec, source_spec), weights)
+    alignment = align(target_spec, source_spec)
+    _accumulate_kernel(field, cells, alignment, weights, lethal_cells is None)
+    if lethal_cells is not None:
+        hits = np.ascontiguousarray(lethal_cells)
+        _add_hits(field, cells, alignment, weights, hits)
 
 
 @kernel
 def _accumulate_kernel(
-    field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights
+    field: LogOdds,
+    source: Cells,
+    alignment: Alignment,
+    weights: _Weights,
+    pushes: bool,
 ) -> None:
-    lethal_as = np.int8(UNKNOWN) if alignment.pushes_lethal else np.int8(LETHAL)
+    apart = alignment.pushes_lethal or not pushes
+    lethal_as = np.int8(UNKNOWN) if apart else np.int8(LETHAL)
     pulled = np.empty(field.shape[1], np.int8)
     first_row, last_row = row_range(source, alignment, field.shape[0])
     for r in range(first_row, last_row):
@@ -79,7 +91,7 @@ def _accumulate_kernel(
             if pulled[c] >= 0:
                 step = weights.hit if pulled[c] >= LETHAL else weights.miss
                 field[r, c] = _added(field[r, c], step, weights.limit)
-    if alignment.pushes_lethal:
+    if alignment.pushes_lethal and pushes:
         for r in range(source.shape[0]):
             if has_lethal(source[r]):
                 _push_hits(field, source, alignment, weights, r)
@@ -89,19 +101,44 @@ def _accumulate_kernel(
 def _push_hits(
     field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights, r: int
 ) -> None:
-    """Add a hit to the target cells that contain row ``r``'s lethal cell centres.
-
-    Where the target cell's own centre lies in a free neighbour, its miss is taken
-    back: within one grid a hit outweighs a miss.
-    """
+    """Add a hit to the target cells that contain row ``r``'s lethal cell centres."""
     for c in range(source.shape[1]):
         if source[r, c] >= LETHAL:
             row, column = cell_at(alignment.target_T_source, r, c)
             if 0 <= row < field.shape[0] and 0 <= column < field.shape[1]:
-                at_row, at_column = cell_at(alignment.source_T_target, row, column)
-                missed = _is_free(source, at_row, at_column)
-                step = weights.hit - weights.miss if missed else weights.hit
-                field[row, column] = _added(field[row, column], step, weights.limit)
+                _add_hit(field, source, alignment, weights, row, column)
+
+
+@kernel
+def _add_hits(
+    field: LogOdds,
+    source: Cells,
+    alignment: Alignment,
+    weights: _Weights,
+    cells: NDArray[np.int64],
+) -> None:
+    for k in range(cells.shape[0]):
+        _add_hit(field, source, alignment, weights, cells[k, 0], cells[k, 1])
+
+
+@kernel
+def _add_hit(
+    field: LogOdds,
+    source: Cells,
+    alignment: Alignment,
+    weights: _Weights,
+    row: int,
+    column: int,
+) -> None:
+    """Add a hit to a target cell.
+
+    Where the cell's own centre lies in a free source cell, its miss is taken back:
+    within one grid a hit outweighs a miss.
+    """
+    at_row, at_column = cell_at(alignment.source_T_target, row, column)
+    missed = _is_free(source, at_row, at_column)
+    step = weights.hit - weights.miss if missed else weights.hit
+    field[row, column] = _added(field[row, column], step, weights.limit)
 
 
 @kernel

@@ -1,7 +1,8 @@
 """Exact signed distance between a polygon and obstacles, without a distance field.
 
-Planning and control use the same measure: the distance from the outline to the centre
-of each lethal cell, less half a cell. The sampled distance field of
+Planning and control use the same measure: the distance from the outline to the points
+at which beams ended (see :mod:`navette.navigation.grids.sub_cells`), or, in a lethal
+cell without points, to its centre less half a cell. The sampled distance field of
 :mod:`navette.navigation.grids.clearance` is a fast lower bound for thousands of poses,
 but changes by a cell when the body moves by a millimetre, which is too coarse to decide
 whether a motion leads away from an obstacle or whether a body fits a tight gap.
@@ -14,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint
+from navette.navigation.grids.clearance import HALF_DIAGONAL
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
+from navette.navigation.grids.sub_cells import SUB_CELLS, Masks
 from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
@@ -28,10 +31,20 @@ class Outline(NamedTuple):
 
 
 class ObstacleGrid(NamedTuple):
-    """Lethal cells for kernels: (H, W) uint8, 1 = lethal, and the grid's frame."""
+    """Lethal cells for kernels.
+
+    Attributes:
+        lethal: (H, W) uint8, 1 = lethal.
+        frame: the grid's frame.
+        masks: (H, W) points within the cells, or empty.
+    """
 
     lethal: NDArray[np.uint8]
     frame: GridFrame
+    masks: Masks
+
+
+_NO_MASKS = np.empty((0, 0), np.uint64)
 
 
 def make_outline(footprint: Footprint) -> Outline:
@@ -40,9 +53,12 @@ def make_outline(footprint: Footprint) -> Outline:
     return Outline(vertices, float(footprint.circumscribed_radius))
 
 
-def make_obstacles(lethal: NDArray[np.uint8], spec: GridSpec) -> ObstacleGrid:
-    """Return the lethal cells (H, W) with their frame."""
-    return ObstacleGrid(np.ascontiguousarray(lethal), grid_frame(spec))
+def make_obstacles(
+    lethal: NDArray[np.uint8], spec: GridSpec, masks: Masks | None = None
+) -> ObstacleGrid:
+    """Return the lethal cells (H, W) with their frame and the points in them."""
+    within = _NO_MASKS if masks is None else np.ascontiguousarray(masks)
+    return ObstacleGrid(np.ascontiguousarray(lethal), grid_frame(spec), within)
 
 
 def exact_clearances(
@@ -115,7 +131,7 @@ def exact_clearance(
     """:func:`exact_clearances` at one pose, for other kernels."""
     frame = obstacles.frame
     size = frame.resolution
-    half_cell = 0.5 * size
+    has_masks = obstacles.masks.size > 0
     dx, dy = x - frame.x, y - frame.y
     u = (frame.cos * dx + frame.sin * dy) / size
     v = (frame.cos * dy - frame.sin * dx) / size
@@ -130,7 +146,7 @@ def exact_clearance(
     c, s = math.cos(yaw), math.sin(yaw)
     cos = c * frame.cos + s * frame.sin
     sin = s * frame.cos - c * frame.sin
-    best = horizon_m + half_cell
+    best = horizon_m
     for row in range(first_row, last_row):
         line = obstacles.lethal[row]
         gy = (row + 0.5 - v) * size
@@ -138,15 +154,42 @@ def exact_clearance(
             if not line[column]:
                 continue
             gx = (column + 0.5 - u) * size
-            near = outline.radius_m + best
+            near = outline.radius_m + best + HALF_DIAGONAL * size
             if near <= 0.0 or gx * gx + gy * gy >= near * near:
                 continue
-            distance = signed_distance(
-                outline.vertices, cos * gx + sin * gy, cos * gy - sin * gx
-            )
-            best = min(best, distance)
-    clearance: float = best - half_cell
-    return clearance
+            bx, by = cos * gx + sin * gy, cos * gy - sin * gx
+            distance = signed_distance(outline.vertices, bx, by)
+            if not has_masks or obstacles.masks[row, column] == 0:
+                best = min(best, distance - 0.5 * size)
+            elif distance - HALF_DIAGONAL * size < best:
+                mask = obstacles.masks[row, column]
+                best = min(best, _of_points(outline, mask, size, bx, by, cos, sin))
+    return best
+
+
+@kernel
+def _of_points(
+    outline: Outline,
+    mask: np.uint64,
+    size: float,
+    x: float,
+    y: float,
+    cos: float,
+    sin: float,
+) -> float:
+    """Least distance to the points of a cell centred at (x, y), both in the base."""
+    best = np.inf
+    step = size / SUB_CELLS
+    for bit in range(SUB_CELLS * SUB_CELLS):
+        if not (mask >> np.uint64(bit)) & np.uint64(1):
+            continue
+        gx = (bit % SUB_CELLS + 0.5) * step - 0.5 * size
+        gy = (bit // SUB_CELLS + 0.5) * step - 0.5 * size
+        distance = signed_distance(
+            outline.vertices, x + cos * gx + sin * gy, y + cos * gy - sin * gx
+        )
+        best = min(best, distance)
+    return best - 0.5 * step
 
 
 @kernel

@@ -4,6 +4,7 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
@@ -41,6 +42,7 @@ def merge(
     *,
     sensor: tuple[float, float] = (0.0, 0.0),
     erase_within_m: float = math.inf,
+    lethal_cells: NDArray[np.int64] | None = None,
 ) -> None:
     """Merge ``source`` into ``target``; unknown source cells change nothing.
 
@@ -55,6 +57,9 @@ def merge(
         erase_within_m: a lethal target cell farther than this from the sensor is not
             overwritten by a lower value: at a distance, neighbouring beams pass a
             post on both sides and mark its cell free without having seen it.
+        lethal_cells: (M, 2) row, column of the target's cells that contain the points
+            where the beams ended. None = those that contain the centres of the
+            source's lethal cells.
 
     Raises:
         InvalidValueError: an unknown mode, or arrays that do not match their specs.
@@ -70,14 +75,23 @@ def merge(
         corner_T_sensor.y / target_spec.resolution,
         float(erase_within_m) / target_spec.resolution,
     )
-    _merge_kernel(grid, cells, align(target_spec, source_spec), rule)
+    alignment = align(target_spec, source_spec)
+    _merge_kernel(grid, cells, alignment, rule, lethal_cells is None)
+    if lethal_cells is not None:
+        grid[lethal_cells[:, 0], lethal_cells[:, 1]] = LETHAL
 
 
 @kernel
 def _merge_kernel(
-    target: Cells, source: Cells, alignment: Alignment, rule: _MergeRule
+    target: Cells,
+    source: Cells,
+    alignment: Alignment,
+    rule: _MergeRule,
+    pushes: bool,
 ) -> None:
-    lethal_as = np.int8(LETHAL - 1) if alignment.pushes_lethal else np.int8(LETHAL)
+    # The lethal cells follow from points, or from the source's lethal cells.
+    apart = alignment.pushes_lethal or not pushes
+    lethal_as = np.int8(LETHAL - 1) if apart else np.int8(LETHAL)
     pulled = np.empty(target.shape[1], np.int8)
     first_row, last_row = row_range(source, alignment, target.shape[0])
     for r in range(first_row, last_row):
@@ -91,7 +105,7 @@ def _merge_kernel(
             _keep_lethal_row(target[r, first:near], pulled[first:near])
             _overwrite_row(target[r, near:far], pulled[near:far])
             _keep_lethal_row(target[r, far:last], pulled[far:last])
-    if alignment.pushes_lethal:
+    if alignment.pushes_lethal and pushes:
         for r in range(source.shape[0]):
             if has_lethal(source[r]):
                 _push_lethal(target, source[r], alignment.target_T_source, r)

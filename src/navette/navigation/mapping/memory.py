@@ -17,7 +17,9 @@ from navette.navigation.grids import (
     accumulate,
     cells_in_footprint,
     compare,
+    mark_points,
     merge,
+    points_of,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.methods import MAPPINGS
@@ -70,6 +72,8 @@ class PlacedCostmap:
     """at ``stamp_ns``"""
     stamp_ns: int
     motion: BodyMotion = STEADY
+    hits: NDArray[np.float64] | None = None
+    """(N, 2) map frame, m: where beams ended, more exact than the lethal cells"""
 
 
 @MAPPINGS.register("log_odds")
@@ -110,6 +114,7 @@ class MapMemory:
         # What clearing restores; grows with the map.
         self._base = cells
         self._cells = cells.copy()
+        self._masks = np.zeros(self.spec.shape, np.uint64)
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
             self._log_odds = self._evidence_of(cells)
@@ -126,6 +131,7 @@ class MapMemory:
             return
         cleared = region.mask(self.spec)
         self._cells[cleared] = self._base[cleared]
+        self._masks[cleared] = 0
         if self._log_odds is not None:
             self._log_odds[cleared] = self._evidence_of(self._base[cleared])
 
@@ -135,12 +141,13 @@ class MapMemory:
         if corners is None:
             return False
         self._grow(corners)
+        lethal_cells = self._mark(costmap.hits)
         if self._own is not None:
             self._cells = self._own.update(
                 self._cells, self.spec, costmap.cells, costmap.spec
             )
         elif self._log_odds is not None:
-            self._add_evidence(self._log_odds, costmap)
+            self._add_evidence(self._log_odds, costmap, lethal_cells)
         else:
             merge(
                 self._cells,
@@ -150,6 +157,7 @@ class MapMemory:
                 "max" if self.params.fusion == "max" else "overwrite",
                 sensor=costmap.sensor,
                 erase_within_m=self.params.erase_range_m,
+                lethal_cells=lethal_cells,
             )
         if self.footprint is not None:
             self._free_under(self.footprint, costmap.map_T_base)
@@ -160,6 +168,14 @@ class MapMemory:
     def occupancy(self) -> NDArray[np.int8]:
         """Return a copy (H, W) of the map: -1 unknown, 0 free … 100 lethal."""
         return self._cells.copy()
+
+    def hit_points(self) -> NDArray[np.float64]:
+        """Return where beams ended (N, 2), map frame, m, within the lethal cells.
+
+        A lethal cell without such a point was lethal in a loaded map, or in a costmap
+        without points.
+        """
+        return points_of(self._masks, self.spec, self._cells >= LETHAL)
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
         """Count obstacle cells near the robot that contradict the map."""
@@ -207,11 +223,23 @@ class MapMemory:
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
+        self._masks = np.pad(self._masks, pad)
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
 
+    def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
+        """Store where beams ended; return the cells (M, 2) with these points."""
+        if hits is not None:
+            return mark_points(self._masks, self.spec, hits)
+        # Lethal cells of this costmap have no points, and older ones may mislead.
+        self._masks[:] = 0
+        return None
+
     def _add_evidence(
-        self, log_odds: NDArray[np.float32], costmap: PlacedCostmap
+        self,
+        log_odds: NDArray[np.float32],
+        costmap: PlacedCostmap,
+        lethal_cells: NDArray[np.int64] | None,
     ) -> None:
         accumulate(
             log_odds,
@@ -221,6 +249,7 @@ class MapMemory:
             hit=_log_odds(self.params.hit_probability),
             miss=_log_odds(self.params.miss_probability),
             limit=_log_odds(self.params.belief_limit),
+            lethal_cells=lethal_cells,
         )
 
     def _occupancy_of(self, log_odds: NDArray[np.float32]) -> NDArray[np.int8]:

@@ -12,11 +12,14 @@ from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
     GridSpec,
+    HitPoints,
     grid_from_message,
     grid_to_message,
     placed,
+    points_to_message,
 )
 from navette.navigation.grids.spec import Cells
 from navette.navigation.mapping.gate import FusionGate
@@ -57,6 +60,11 @@ class MapMemoryNode(StageNode):
             callback="on_costmap",
         ),
         Input.of(
+            topics.COSTMAP_POINTS,
+            "where the beams of the costmap with the same stamp ended",
+            callback="on_costmap_points",
+        ),
+        Input.of(
             topics.ODOMETRY,
             "pose and velocity",
             rate_hz=10.0,
@@ -65,6 +73,10 @@ class MapMemoryNode(StageNode):
         ),
     )
     OUTPUTS: ClassVar = (
+        Output.of(
+            topics.MAP_POINTS,
+            "where beams ended, within the lethal cells of the map with the same stamp",
+        ),
         Output.of(
             topics.MAP,
             "map of everything seen so far",
@@ -112,6 +124,13 @@ class MapMemoryNode(StageNode):
         )
         if self._waiting:
             self._place_waiting()
+
+    def on_costmap_points(self, msg: PointCloud2) -> None:
+        """Store where beams ended for the costmap of the same stamp."""
+        try:
+            self._hits.receive(msg)
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Place the costmap as soon as its pose is available."""
@@ -162,6 +181,7 @@ class MapMemoryNode(StageNode):
         self._waiting = PlacementQueue[OccupancyGrid](
             round(self.params.pose_wait_s * 1e9)
         )
+        self._hits = HitPoints()
         self._newest: PlacedCostmap | None = None
         self._last_stamp_ns = 0
         self._publish_map(self._now_ns())
@@ -188,6 +208,7 @@ class MapMemoryNode(StageNode):
         except InvalidValueError as error:
             self._drop("out_of_range", str(error))
             return None
+        hits = self._hits.at(ready.stamp_ns)
         return PlacedCostmap(
             cells,
             there,
@@ -195,6 +216,7 @@ class MapMemoryNode(StageNode):
             ready.map_T_base,
             ready.stamp_ns,
             self._motion,
+            None if hits is None else map_T_sensor.apply(hits),
         )
 
     def _on_placed(self, costmap: PlacedCostmap) -> None:
@@ -211,6 +233,8 @@ class MapMemoryNode(StageNode):
 
     def _publish_map(self, stamp_ns: int) -> None:
         memory, frame_id = self._memory, self.params.map_frame
+        points = points_to_message(memory.hit_points(), frame_id, stamp_ns)
+        self.publish(topics.MAP_POINTS.name, points)
         message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
         self._published = message
         self.publish(topics.MAP.name, message)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import make_obstacles, make_outline
+from navette.navigation.grids import make_outline
 from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
@@ -132,7 +132,7 @@ class DetourPlanner:
             margin_m=grid.margin_m,
             comfort_m=grid.margin_m + max(params.comfort_m, 0.05),
             outside_m=grid.outside_m,
-            obstacles=make_obstacles(grid.obstacles, grid.spec),
+            obstacles=grid.exact_obstacles,
             outline=make_outline(self.body.footprint),
             unseen=self._unseen,
         )

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from navette.navigation.grids import (
     body_clearance,
     exact_clearances,
-    make_obstacles,
     make_outline,
 )
 from navette.navigation.planning.path_shape import Poses
@@ -45,7 +44,7 @@ def check_path(
     tight = clearance < margin
     if tight.any():
         clearance[tight] = exact_clearances(
-            make_obstacles(grid.obstacles, grid.spec),
+            grid.exact_obstacles,
             make_outline(body.footprint),
             poses[tight],
             margin,

@@ -23,6 +23,7 @@ from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_progress import PathProgress
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Plan, Planner
+from navette.navigation.planning.planning_grid import NO_HITS
 from navette.navigation.planning.progress_checker import ProgressChecker
 from navette.navigation.planning.reports import (
     NavigatorReport,
@@ -58,6 +59,7 @@ class Navigator:
         self.planner = Planner(params)
         self.report = NavigatorReport()
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._hits = NO_HITS
         self._avoided = AvoidedPlaces()
         self._has_map = False
         self._map_changed = False
@@ -83,15 +85,24 @@ class Navigator:
         other._checker = copy.copy(self._checker)
         return other
 
-    def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
-        """Replace the map (H, W); the next step checks the path against it."""
-        self._map = occupancy, spec
+    def set_map(
+        self,
+        occupancy: NDArray[np.int8],
+        spec: GridSpec,
+        hits: NDArray[np.float64] = NO_HITS,
+    ) -> None:
+        """Replace the map (H, W); the next step checks the path against it.
+
+        ``hits`` (N, 2), map frame, m: where beams ended within its lethal cells.
+        """
+        self._map, self._hits = (occupancy, spec), hits
         self._apply_map()
 
     def _apply_map(self) -> None:
         if self._map is not None:
             occupancy, spec = self._map
-            self.planner.set_map(self._avoided.marked(occupancy, spec), spec)
+            marked = self._avoided.marked(occupancy, spec)
+            self.planner.set_map(marked, spec, self._hits)
             self._has_map = self._map_changed = True
 
     def avoid_place(self) -> bool:

@@ -23,22 +23,24 @@ from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.msgs.std_msgs.msg import Empty, Header
 from navette.msgs.std_srvs.srv import (
     Trigger,
     Trigger_Request,
     Trigger_Response,
 )
-from navette.navigation.grids import GridSpec, grid_from_message
+from navette.navigation.grids import GridSpec, HitPoints, grid_from_message
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
+from navette.navigation.planning.planning_grid import NO_HITS
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
 from navette.navigation.planning.servers.smoother_server import SmootherServer
 from navette.navigation.servers.lifecycle import StageLifecycle
-from navette.runtime import Input, Output, StageNode
+from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.input_check import input_check
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
@@ -69,6 +71,11 @@ class PlannerNode(StageNode):
             topics.MAP,
             "map of everything seen so far",
             callback="on_map",
+        ),
+        Input.of(
+            topics.MAP_POINTS,
+            "where beams ended, within the lethal cells of the map with the same stamp",
+            callback="on_map_points",
         ),
         Input.of(
             topics.ODOMETRY,
@@ -135,6 +142,8 @@ class PlannerNode(StageNode):
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._map_ns = 0
+        self._hits = HitPoints()
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
         self._logged = self._fault = ""
         self._path_ns = 0  # of the newest path
@@ -186,8 +195,26 @@ class PlannerNode(StageNode):
             occupancy, spec = grid_from_message(msg)
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
-        self._map = occupancy, spec
-        self._when_stepped(lambda: self._navigator.set_map(occupancy, spec))
+        self._map, self._map_ns = (occupancy, spec), stamp_to_ns(msg.header.stamp)
+        self._apply_map()
+
+    def on_map_points(self, msg: PointCloud2) -> None:
+        """Store where beams ended; usually it arrives before the map of its stamp."""
+        try:
+            stamp_ns = self._hits.receive(msg)
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
+        if self._map is not None and stamp_ns == self._map_ns:
+            self._apply_map()
+
+    def _newest_hits(self) -> NDArray[np.float64]:
+        hits = self._hits.at(self._map_ns)
+        return NO_HITS if hits is None else hits
+
+    def _apply_map(self) -> None:
+        assert self._map is not None, "called with a map"
+        (occupancy, spec), hits = self._map, self._newest_hits()
+        self._when_stepped(lambda: self._navigator.set_map(occupancy, spec, hits))
         self.on_timer()
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -347,7 +374,7 @@ class PlannerNode(StageNode):
         if was_paused:
             self._navigator.pause(self._now_ns)
         if self._map is not None:
-            self._navigator.set_map(*self._map)
+            self._navigator.set_map(*self._map, self._newest_hits())
         if had_path:
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, empty)

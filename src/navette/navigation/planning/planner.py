@@ -18,6 +18,7 @@ from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses, path_cost, turn_in_place
 from navette.navigation.planning.planning_grid import (
+    NO_HITS,
     BodyShape,
     PlanningGrid,
     open_at,
@@ -70,6 +71,7 @@ class Planner:
         self.router = GridRouter(params)
         self._own = _own_plan(params)
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._hits = NO_HITS
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
         #: Pose where the robot was put down; None: that of the start of each plan.
@@ -86,14 +88,23 @@ class Planner:
         other = Planner(params)
         other.put_down_at = self.put_down_at
         if self._map is not None:
-            other.set_map(*self._map)
+            other.set_map(*self._map, self._hits)
         return other
 
-    def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
-        """Replace the map (H, W): −1 unknown, 0 free … 100 occupied."""
+    def set_map(
+        self,
+        occupancy: NDArray[np.int8],
+        spec: GridSpec,
+        hits: NDArray[np.float64] = NO_HITS,
+    ) -> None:
+        """Replace the map (H, W): −1 unknown, 0 free … 100 occupied.
+
+        ``hits`` (N, 2), map frame, m: where beams ended within its lethal cells.
+        """
         if self._map is None or self._map[1].resolution != spec.resolution:
             self._body = BodyShape.of(self.footprint, spec.resolution)
         self._map = occupancy, spec
+        self._hits = hits
         self._grids.clear()
 
     def warm_up(self) -> None:
@@ -123,7 +134,9 @@ class Planner:
         margin = self.params.clearance_margin_m if margin_m is None else margin_m
         if margin not in self._grids:
             params = replace(self.params, clearance_margin_m=margin)
-            self._grids[margin] = planning_grid(*self._map, self.body, params)
+            self._grids[margin] = planning_grid(
+                *self._map, self.body, params, self._hits
+            )
         return self._grids[margin]
 
     def plan(self, start: Pose2, goal: Goal, *, exact_start: bool = False) -> Plan:

@@ -6,6 +6,7 @@ obstacles are the lethal cells, and distances are computed from them.
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,12 @@ from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     GridSpec,
+    ObstacleGrid,
     body_points,
     cells_in_footprint,
     distance_field,
+    make_obstacles,
+    mark_points,
 )
 from navette.navigation.grids.distance import MAX_RADIUS
 from navette.navigation.planning.params import PlannerParams
@@ -32,6 +36,8 @@ from navette.navigation.planning.traversal import (
 _STEP = 0.2
 # Distance step of the cost table.
 _LEVEL_M = 0.004
+
+NO_HITS = np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,7 @@ class PlanningGrid:
         distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
         cost: (H, W) uint8 for ``table``; 255 where the base cannot be.
         margin_m: clearance that the body keeps.
+        hits: (N, 2) map frame, m: where beams ended; empty = not known.
     """
 
     spec: GridSpec
@@ -77,6 +84,14 @@ class PlanningGrid:
     cost: NDArray[np.uint8]
     table: EdgeTable
     margin_m: float
+    hits: NDArray[np.float64]
+
+    @cached_property
+    def exact_obstacles(self) -> ObstacleGrid:
+        """The lethal cells with the points in them, for exact clearances."""
+        masks = np.zeros(self.spec.shape, np.uint64)
+        mark_points(masks, self.spec, self.hits)
+        return make_obstacles(self.obstacles, self.spec, masks)
 
     @property
     def outside_m(self) -> float:
@@ -129,6 +144,7 @@ def planning_grid(
     spec: GridSpec,
     body: BodyShape,
     params: PlannerParams,
+    hits: NDArray[np.float64] = NO_HITS,
 ) -> PlanningGrid:
     """Prepare an occupancy grid (H, W): −1 unknown, 0 free … 100 occupied."""
     if occupancy.shape != spec.shape:
@@ -141,6 +157,7 @@ def planning_grid(
         spec,
         body,
         params,
+        hits,
     )
 
 
@@ -162,7 +179,7 @@ def without_obstacles_in(
         return grid
     obstacles = grid.obstacles.copy()
     obstacles[rows, columns] = 0
-    return _prepared(occupancy, obstacles, grid.spec, body, params)
+    return _prepared(occupancy, obstacles, grid.spec, body, params, grid.hits)
 
 
 def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
@@ -192,6 +209,7 @@ def _prepared(
     spec: GridSpec,
     body: BodyShape,
     params: PlannerParams,
+    hits: NDArray[np.float64],
 ) -> PlanningGrid:
     margin = params.clearance_margin_m
     closed_m = body.inscribed_m + margin
@@ -215,7 +233,9 @@ def _prepared(
         np.maximum(cost, floor, out=cost, where=unknown)
     else:
         cost[unknown] = LETHAL
-    return PlanningGrid(spec, obstacles, distance_m, cost, EdgeTable(weight), margin)
+    return PlanningGrid(
+        spec, obstacles, distance_m, cost, EdgeTable(weight), margin, hits
+    )
 
 
 def _clearance_table(

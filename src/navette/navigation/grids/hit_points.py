@@ -1,0 +1,96 @@
+"""Points at which beams ended, as messages beside the grid of the same stamp."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
+from navette.msgs.std_msgs.msg import Header
+
+_KEPT = 16
+_FIELD_BYTES = 4
+
+
+def points_to_message(
+    points: NDArray[np.float64], frame_id: str, stamp_ns: int
+) -> PointCloud2:
+    """Return a cloud of points (N, 2), m, at z = 0."""
+    cloud = np.zeros((len(points), 3), np.float32)
+    cloud[:, :2] = points
+    stamp = Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
+    return PointCloud2(
+        header=Header(stamp=stamp, frame_id=frame_id),
+        height=1,
+        width=len(points),
+        fields=[
+            PointField(
+                name=name,
+                offset=_FIELD_BYTES * k,
+                datatype=PointField.FLOAT32,
+                count=1,
+            )
+            for k, name in enumerate("xyz")
+        ],
+        point_step=3 * _FIELD_BYTES,
+        row_step=3 * _FIELD_BYTES * len(points),
+        data=cloud.reshape(-1).view(np.uint8),
+        is_dense=True,
+    )
+
+
+def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
+    """Return the points (N, 2) x, y of a cloud; those that are not finite are left out.
+
+    Raises:
+        InvalidValueError: no x and y of type float32, or data of another size.
+    """
+    offsets = {
+        field.name: field.offset
+        for field in msg.fields
+        if field.datatype == PointField.FLOAT32
+    }
+    count, step = msg.width * msg.height, msg.point_step
+    data = np.asarray(msg.data, np.uint8)
+    ends = [offsets.get(name, step) + _FIELD_BYTES for name in "xy"]
+    if max(ends) > step or data.size != count * step or msg.is_bigendian:
+        raise InvalidValueError(
+            f"point cloud of {msg.width} x {msg.height} points with fields "
+            f"{sorted(offsets)} in {data.size} bytes: expected float32 x and y, "
+            f"little-endian, in {step} bytes a point"
+        )
+    rows = data.reshape(count, step)
+    columns = [
+        np.ascontiguousarray(rows[:, end - _FIELD_BYTES : end]).view("<f4")
+        for end in ends
+    ]
+    points = np.concatenate(columns, axis=1).astype(np.float64)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+class HitPoints:
+    """The newest clouds by stamp, for the grids of the same stamps."""
+
+    def __init__(self) -> None:
+        self._clouds: dict[int, NDArray[np.float64]] = {}
+
+    def clear(self) -> None:
+        """Drop all clouds."""
+        self._clouds.clear()
+
+    def receive(self, msg: PointCloud2) -> int:
+        """Store a cloud; return its stamp.
+
+        Raises:
+            InvalidValueError: it is invalid; see :func:`points_from_message`.
+        """
+        stamp = msg.header.stamp
+        stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+        self._clouds[stamp_ns] = points_from_message(msg)
+        while len(self._clouds) > _KEPT:
+            del self._clouds[next(iter(self._clouds))]
+        return stamp_ns
+
+    def at(self, stamp_ns: int) -> NDArray[np.float64] | None:
+        """Return the points (N, 2) of the cloud with this stamp, if it arrived."""
+        return self._clouds.get(stamp_ns)
