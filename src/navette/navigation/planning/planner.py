@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import GridSpec, Layer, StartArea, unseen_mask
+from navette.navigation.planning.close_look import close_map
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
 from navette.navigation.planning.goals import nearest_reachable
@@ -179,7 +180,33 @@ class Planner:
             return plan
         squeezed = self._plan_with(tight, start, goal)
         worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
-        return squeezed if squeezed.outcome.has_path and worth else plan
+        plan = squeezed if squeezed.outcome.has_path and worth else plan
+        return plan if plan.outcome.has_path else self._look_closer(start, goal, plan)
+
+    def _look_closer(self, start: Pose2, goal: Goal, plan: Plan) -> Plan:
+        """Plan on finer cells where those of the map have no path."""
+        assert self._map is not None, "set_map comes first"
+        occupancy, spec = self._map
+        closer = close_map(
+            occupancy,
+            spec,
+            self._hits,
+            self.params.lethal_cost,
+            np.array([(start.x, start.y), (goal.x, goal.y)]),
+            2 * self.body.circumscribed_m,
+        )
+        slack = closer.spec.resolution
+        for body in (
+            BodyShape.of(self.footprint, slack).through_gaps(slack),
+            BodyShape.of(self.footprint, slack).loose(slack),
+        ):
+            other = Planner(self.params)
+            other.set_map(closer.occupancy, closer.spec, self._hits)
+            other._body = body
+            found = other._plan_with(self.params.tight_margin_m, start, goal)
+            if found.outcome.has_path:
+                return found
+        return found
 
     def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
         """Plan with the grid search alone and the full margin; None without a path.

@@ -48,12 +48,15 @@ class BodyShape:
         points: (K, 3) x, y, disc radius; see
             :func:`navette.navigation.grids.body_points`.
         inscribed_m, circumscribed_m: radii of the circles about the base.
+        closed_m: distance to an obstacle, above the margin, below which a grid search
+            does not move the base.
     """
 
     footprint: Footprint
     points: NDArray[np.float64]
     inscribed_m: float
     circumscribed_m: float
+    closed_m: float
 
     @classmethod
     def of(cls, footprint: Footprint, spacing: float) -> "BodyShape":
@@ -62,7 +65,20 @@ class BodyShape:
             body_points(footprint, spacing),
             footprint.inscribed_radius,
             footprint.circumscribed_radius,
+            footprint.inscribed_radius,
         )
+
+    def through_gaps(self, slack_m: float) -> "BodyShape":
+        """Return the body as it drives along a gap: half its width keeps it out.
+
+        The base may be nearer to an obstacle ahead or behind, or while it turns.
+        """
+        half_width = max(abs(y) for _, y in self.footprint.vertices)
+        return replace(self, closed_m=half_width - slack_m)
+
+    def loose(self, slack_m: float) -> "BodyShape":
+        """Return the body with grid cells that are closed only this much nearer."""
+        return replace(self, closed_m=max(0.0, self.inscribed_m - slack_m))
 
 
 @dataclass(frozen=True)
@@ -212,7 +228,7 @@ def _prepared(
     hits: NDArray[np.float64],
 ) -> PlanningGrid:
     margin = params.clearance_margin_m
-    closed_m = body.inscribed_m + margin
+    closed_m = body.closed_m + margin
     free_m = body.circumscribed_m + margin + params.comfort_m
     reach_m = min(free_m + spec.resolution, (MAX_RADIUS - 1) * spec.resolution)
     distance_m = distance_field(obstacles, spec.resolution, reach_m)
