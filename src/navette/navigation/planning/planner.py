@@ -201,6 +201,7 @@ class Planner:
             BodyShape.of(self.footprint, slack).loose(slack),
         ):
             other = Planner(self.params)
+            other.router = GridRouter(self.params, centres=True)
             other.set_map(closer.occupancy, closer.spec, self._hits)
             other._body = body
             found = other._plan_with(self.params.tight_margin_m, start, goal)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.centring import centred
 from navette.navigation.planning.footprint_check import clearances
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.own_methods import OwnSearch
@@ -39,10 +40,14 @@ def _make_search(params: PlannerParams) -> _Search:
 
 
 class GridRouter:
-    """Plan the path of a point through a grid and add headings."""
+    """Plan the path of a point through a grid and add headings.
 
-    def __init__(self, params: PlannerParams) -> None:
+    ``centres``: move the path to the middle of tight places, which takes longer.
+    """
+
+    def __init__(self, params: PlannerParams, *, centres: bool = False) -> None:
         self.params = params
+        self.centres = centres
         self._search = _make_search(params)
 
     def route(
@@ -96,9 +101,10 @@ class GridRouter:
             poses = here
         else:
             keep_m = body.circumscribed_m + grid.margin_m
-            poses = headed(
-                resample(smooth(resample(line, spacing), grid, keep_m), spacing)
-            )
+            line = smooth(resample(line, spacing), grid, keep_m)
+            if self.centres:
+                line = centred(line, grid, body)
+            poses = headed(resample(line, spacing))
             if self.turns_first(start, poses):
                 poses = joined(self._turn(grid, body, start, poses[0, 2]), poses)
         if goal_yaw is None:
