@@ -19,6 +19,7 @@ FLOW = (
     "sim",
     "localization",
     "costmap",
+    "tracking",
     "mapping",
     "planning",
     "control",

@@ -56,6 +56,7 @@ def dynabarn_trial(suite: str, name: str, world: str) -> Trial:
         start=START,
         goals=(GOAL,),
         reach_m=1.0,
+        ends_at_contact=True,
         limit_s=100.0,
         shortest_m=math.dist(START[:2], GOAL),
     )

@@ -18,12 +18,13 @@ _MOVED_M = 0.1
 
 
 class TrialObserver(Node):
-    """Record the true motion; call ``on_end`` near the goal.
+    """Record the true motion; call ``on_end`` near the goal, or at a contact.
 
     Args:
         goal: last goal (m, map).
         reach_m: distance to it that ends the trial; 0 = never.
         on_end: called once.
+        ends_at_contact: whether the first contact is an end too.
     """
 
     def __init__(
@@ -32,6 +33,7 @@ class TrialObserver(Node):
         reach_m: float,
         on_end: Callable[[], None],
         *,
+        ends_at_contact: bool = False,
         context: Context,
     ) -> None:
         super().__init__("trial_observer", context=context)
@@ -52,6 +54,11 @@ class TrialObserver(Node):
             _LATCHED,
             shared=True,
         )
+
+        if ends_at_contact:
+            self.create_subscription(
+                DiagnosticStatus, topics.CONTACTS.name, lambda _: on_end(), 10
+            )
 
     @property
     def samples(self) -> NDArray[np.float64]:

@@ -39,7 +39,11 @@ def run_trial(trial: Trial) -> TrialResult:
     simulation = Simulation(options, scene=scene, parameters=trial.parameters)
     try:
         observer = TrialObserver(
-            trial.goals[-1], trial.reach_m, simulation.stop, context=simulation.context
+            trial.goals[-1],
+            trial.reach_m,
+            simulation.stop,
+            ends_at_contact=trial.ends_at_contact,
+            context=simulation.context,
         )
         simulation.executor.add_node(observer)
         simulation.run()

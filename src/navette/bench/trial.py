@@ -24,6 +24,7 @@ class Trial:
         seed: seed of all noise.
         reach_m: distance from the last goal, by the true pose, that ends the trial as a
             success; 0 = every goal must be ``reached`` by the planner.
+        ends_at_contact: whether the first contact ends the trial.
         limit_s: simulated time for the trial.
         shortest_m: length of the shortest path, for the score and the path ratio.
         fastest_mps: speed of the ideal run in BARN's score.
@@ -39,6 +40,7 @@ class Trial:
     goals: tuple[Point, ...]
     seed: int = 0
     reach_m: float = 0.0
+    ends_at_contact: bool = False
     limit_s: float = 100.0
     shortest_m: float = math.nan
     fastest_mps: float = 2.0

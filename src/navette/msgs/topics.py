@@ -53,6 +53,12 @@ LOCAL_FOOTPRINT = StackTopic(
 GLOBAL_COSTMAP = StackTopic(
     "/global_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
 )
+TRACKED_OBSTACLES = StackTopic(
+    "/tracked_obstacles", "nav2_dynamic_msgs/msg/ObstacleArray", 1
+)
+TRACKED_MARKERS = StackTopic(
+    "/tracked_obstacles/markers", "visualization_msgs/msg/MarkerArray", 1
+)
 PATH = StackTopic("/path", "nav_msgs/msg/Path")
 PLAN = StackTopic("/plan", "nav_msgs/msg/Path")
 SPEED_LIMIT = StackTopic("/speed_limit", "nav2_msgs/msg/SpeedLimit")

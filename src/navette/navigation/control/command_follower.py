@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Footprint, Pose2, angle_difference
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import collision_check
 from navette.navigation.control.limits import (
@@ -19,6 +19,7 @@ from navette.navigation.control.limits import (
     brake,
     clamp,
 )
+from navette.navigation.control.moving_obstacles import safe_share
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
     FARTHEST_M,
@@ -26,7 +27,7 @@ from navette.navigation.control.records import (
     FollowerOutput,
 )
 from navette.navigation.control.states import ControlState
-from navette.navigation.grids import NONE_UNSEEN
+from navette.navigation.grids import NO_DISCS, NONE_UNSEEN, disc_outlines
 from navette.plugins import checked_array, own_call
 
 _AHEAD_M = 2.0  # how far along the path the robot may be beyond the last place
@@ -66,7 +67,8 @@ class CommandMethod(Protocol):
         Args:
             state: of the robot.
             path: (N, 3) x, y, yaw (m, rad, map) from the pose nearest to the robot on.
-            obstacles: (M, 2) x, y (m, map) of occupied cells near the robot.
+            obstacles: (M, 2) x, y (m, map) of occupied cells near the robot, and of the
+                outlines of what moves.
         """
 
 
@@ -90,6 +92,8 @@ class CommandFollower:
         self._collision = collision_check(params)
         self._cap = NO_CAP
         self._obstacles = np.empty((0, 2))
+        self._discs = NO_DISCS
+        self._body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
         self.reset()
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
@@ -150,6 +154,10 @@ class CommandFollower:
         self._collision.set_obstacles(points, half_cell, unseen)
         self._obstacles = points
 
+    def set_moving(self, discs: NDArray[np.float64]) -> None:
+        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
+        self._discs = discs
+
     def pause(self) -> None:
         """Continue later from the robot's motion then, not from the last command."""
         self._last = None
@@ -192,7 +200,7 @@ class CommandFollower:
             self._method.command,
             state,
             self._path[self._at :].copy(),
-            self._obstacles.copy(),
+            np.concatenate([self._obstacles, disc_outlines(self._discs)]),
         )
         expected = "(speed, turn rate) in m/s and rad/s"
         speed, turn_rate = checked_array(
@@ -205,9 +213,12 @@ class CommandFollower:
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
-        self._scale = scale = min(1.0, scale)
         if scale < _BLOCKED_SCALE:
             return self._emit(STOP, ControlState.BLOCKED)
+        margin_m = self._params.moving_clearance_m / 2
+        motion = command.speed, command.turn_rate
+        yielding = safe_share(pose, motion, self._discs, self._body_m, margin_m)
+        self._scale = scale = min(1.0, scale, yielding)
         return self._emit(command.scaled(scale), ControlState.FOLLOWING)
 
     def _advance(self, pose: Pose2) -> None:

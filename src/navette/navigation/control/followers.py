@@ -48,6 +48,9 @@ class Follower(Protocol):
     ) -> None:
         """Store the values of :class:`navette.navigation.grids.Obstacles`."""
 
+    def set_moving(self, discs: NDArray[np.float64]) -> None:
+        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
+
     def pause(self) -> None:
         """Continue later from the robot's motion then, not from the last command."""
 

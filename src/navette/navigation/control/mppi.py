@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from navette.geometry import DRIVES
 from navette.navigation.control.drive_models import ACKERMANN, OMNI, DriveLimits
 from navette.navigation.control.limits import NO_CAP, SpeedCap, VelocityCommand
+from navette.navigation.control.moving_obstacles import add_moving_costs
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.rollouts import (
     CostWeights,
@@ -31,6 +32,7 @@ from navette.navigation.control.rollouts import (
     RolloutBody,
     rollout_costs,
 )
+from navette.navigation.grids import NO_DISCS
 
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]
@@ -100,9 +102,17 @@ class Mppi:
         return self._step_s * len(self._commands)
 
     def step(
-        self, state: MotionState, path: PathWindow, field: LocalField, dt: float
+        self,
+        state: MotionState,
+        path: PathWindow,
+        field: LocalField,
+        dt: float,
+        discs: Array = NO_DISCS,
     ) -> VelocityCommand:
-        """Return the command for the next ``dt`` seconds."""
+        """Return the command for the next ``dt`` seconds.
+
+        ``discs``: moving obstacles (M, 5) x, y, vx, vy, radius.
+        """
         self._shift(dt)
         candidates = self._draw_candidates()
         step_s: Any = np.float32(self._step_s)
@@ -120,6 +130,16 @@ class Mppi:
             self._weights,
             self._costs,
         )
+        if len(discs):
+            add_moving_costs(
+                candidates,
+                state.yaw,
+                step_s,
+                self._drive,
+                _relative(discs, state),
+                (self._body.reach_m, self._params.moving_clearance_m),
+                self._costs,
+            )
         self._average(candidates)
         return self._first_command()
 
@@ -199,6 +219,11 @@ class Mppi:
             (v * forward, side * limits.max_side_speed, 0.0) for v, side in _SIDEWAYS
         ]
         return np.array(rolling + sliding).T
+
+
+def _relative(discs: Array, state: MotionState) -> Array32:
+    """Return discs relative to the robot's position."""
+    return (discs - (state.x, state.y, 0.0, 0.0, 0.0)).astype(np.float32)
 
 
 def _weights(params: ControlParams) -> CostWeights:

@@ -18,6 +18,7 @@ from navette.geometry import Footprint
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
+from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.command_gate import InputAges
@@ -40,7 +41,13 @@ from navette.navigation.control.servers.follow_path import (
     FollowPathServer,
 )
 from navette.navigation.control.states import ControlState, LimitedBy
-from navette.navigation.grids import ObstacleTracker
+from navette.navigation.grids import (
+    NO_DISCS,
+    MovingDiscs,
+    ObstacleTracker,
+    discs_from_message,
+    inside_discs,
+)
 from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.plugins import MethodFaultError
@@ -56,6 +63,10 @@ _NEVER = -(1 << 62)
 _EXPLAIN_AFTER_NS = 1_000_000_000
 _EXPLAIN_PERIOD_NS = 60_000_000_000
 _TICKS_PER_REPORT = 5
+# Age of the moving obstacles from which they are obsolete, and what is added to their
+# radius to take their returns out of the static obstacles.
+_MOVING_TIMEOUT_S = 0.5
+_MOVING_MARGIN_M = 0.2
 # Status of a planner before its first goal.
 _NO_GOAL_YET = "waiting_for_goal"
 
@@ -88,6 +99,11 @@ class ControlNode(StageNode):
             topics.MAP,
             "what the costmap does not show, such as behind the robot",
             callback="on_map",
+        ),
+        Input.of(
+            topics.TRACKED_OBSTACLES,
+            "moving obstacles, which are avoided where they will be",
+            callback="on_moving",
         ),
         Input.of(
             topics.PLANNER_STATUS,
@@ -139,6 +155,7 @@ class ControlNode(StageNode):
         self._fault = ""  # newest of the user's method
         self._collision_action = CollisionMonitorState.DO_NOTHING
         self._obstacles = self._new_obstacles()
+        self._moving = MovingDiscs(NO_DISCS, 0)
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
@@ -210,6 +227,10 @@ class ControlNode(StageNode):
             raise InvalidInputError("unknown_frame", text)
         self._obstacles.remember(msg)
 
+    def on_moving(self, msg: ObstacleArray) -> None:
+        """Store the moving obstacles."""
+        self._moving = discs_from_message(msg, self.params.map_frame)
+
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """Note that the planner is alive; drop the path if the planner restarted."""
         self._planner_ns = self._now_ns
@@ -270,6 +291,7 @@ class ControlNode(StageNode):
         self._new_follower(self.params)
         self._path = np.empty((0, 3))
         self._obstacles.reset()
+        self._moving = MovingDiscs(NO_DISCS, 0)
         self._odometry = None
         self._odometry_ns = self._located_ns = _NEVER
         self._planner_ns = _NEVER
@@ -345,6 +367,7 @@ class ControlNode(StageNode):
         self._locate()
         self._publish_footprint()
         self._place_costmap()
+        self._follower.set_moving(self._moving.at(self._now_ns, _MOVING_TIMEOUT_S))
         if self._is_paused and self._follower.has_path:
             self._report(PAUSED)
             self._follow_server.step_paused()
@@ -434,7 +457,10 @@ class ControlNode(StageNode):
             self.drop_input(topics.COSTMAP.name, invalid)
             return
         if obstacles is not None and self._obstacles.placed_ns is not None:
-            self._follower.set_obstacles(*obstacles)
+            moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
+            still = ~inside_discs(obstacles.points, moving, _MOVING_MARGIN_M)
+            static = obstacles._replace(points=obstacles.points[still])
+            self._follower.set_obstacles(*static)
             self._placed_ns = self._obstacles.placed_ns
 
     def _send(self, output: FollowerOutput) -> None:

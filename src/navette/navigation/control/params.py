@@ -136,6 +136,10 @@ class ControlParams(Params):
         at_least=0.0,
         at_most=10.0,
     )
+    moving_clearance_m: float = param(
+        0.4, "distance from moving obstacles below which the robot avoids or yields",
+        unit="m", at_least=0.0,
+    )  # fmt: skip
     reaction_s: float = param(
         0.2, "delay from command to motion", unit="s", at_least=0.0
     )

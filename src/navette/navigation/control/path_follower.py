@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.drive import PieceDrive
@@ -18,6 +18,7 @@ from navette.navigation.control.limits import (
     brake,
     clamp,
 )
+from navette.navigation.control.moving_obstacles import safe_share
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import DrivePiece, Piece, split_path
 from navette.navigation.control.records import (
@@ -27,7 +28,7 @@ from navette.navigation.control.records import (
 )
 from navette.navigation.control.rotate import TurnInPlace
 from navette.navigation.control.states import ControlState, LimitedBy
-from navette.navigation.grids import NONE_UNSEEN
+from navette.navigation.grids import NO_DISCS, NONE_UNSEEN
 
 _START_WINDOW_M = 2.0  # how far along a new path the robot may already be
 _BLOCKED_SCALE = 0.1  # below this share of the command the robot is blocked …
@@ -46,6 +47,8 @@ class PathFollower:
         self._gate = CommandGate(params)
         self._parts = ControllerParts.of(params)
         self._speed_limits = NO_CAP
+        self._discs = NO_DISCS
+        self._body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
         self.reset()
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
@@ -107,6 +110,10 @@ class PathFollower:
     ) -> None:
         """Store the values of :class:`navette.navigation.grids.Obstacles`."""
         self._parts.collision.set_obstacles(points, half_cell, unseen)
+
+    def set_moving(self, discs: NDArray[np.float64]) -> None:
+        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
+        self._discs = discs
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
@@ -189,7 +196,10 @@ class PathFollower:
             if self._active is not None:
                 self._active.reconsider()
             return STOP, True
-        self._scale = scale = min(1.0, scale)
+        margin_m = self._params.moving_clearance_m / 2
+        arc = motion.speed, motion.turn_rate
+        yielding = safe_share(pose, arc, self._discs, self._body_m, margin_m)
+        self._scale = scale = min(1.0, scale, yielding)
         if scale < 1.0:
             self._limited_by = LimitedBy.COLLISION_CHECK
         return command.scaled(scale), False

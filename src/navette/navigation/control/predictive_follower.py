@@ -32,7 +32,12 @@ from navette.navigation.control.rollouts import (
     PathWindow,
 )
 from navette.navigation.control.states import ControlState, LimitedBy
-from navette.navigation.grids import NONE_UNSEEN, body_points, distance_field
+from navette.navigation.grids import (
+    NO_DISCS,
+    NONE_UNSEEN,
+    body_points,
+    distance_field,
+)
 
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
@@ -59,6 +64,7 @@ class PredictiveFollower:
         self._mppi = Mppi(params, self._body)
         self._field = _open_field()
         self._speed_limits = NO_CAP
+        self._discs = NO_DISCS
         self.reset()
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
@@ -137,6 +143,10 @@ class PredictiveFollower:
             points, 2 * half_cell, self._params.mppi_clearance_m + 1.0
         )
 
+    def set_moving(self, discs: NDArray[np.float64]) -> None:
+        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
+        self._discs = discs
+
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
         """Return the command for the next ``dt`` seconds."""
         stale = self._gate.stale(inputs.ages)
@@ -157,7 +167,11 @@ class PredictiveFollower:
             inputs.pose, last.speed, last.turn_rate, _DELAY_S, side=last.side
         )
         wanted = self._mppi.step(
-            MotionState(*ahead, *last), self._near(self._path), self._field, dt
+            MotionState(*ahead, *last),
+            self._near(self._path),
+            self._field,
+            dt,
+            self._discs,
         )
         command = approach(last, wanted, self._params, dt)
         return self._keep_clear(inputs.pose, command)

@@ -204,7 +204,7 @@ def _chunk_costs(
             rates = commands[t, 2, first:last]
             advance_omni(limits, step_s, speeds, turns, rates, speed)
         _effort_costs(before, speed[steering], weights.effort, costs)
-        _move(pose, speed, step_s)
+        move(pose, speed, step_s)
         found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
         if found > 0:
             _clearances(field, body, weights.clearance_m, near, cells, found)
@@ -225,7 +225,7 @@ def _effort_costs(
 
 
 @kernel(nogil=True, fastmath=True)
-def _move(pose: Array32, speed: Array32, step_s: float) -> None:
+def move(pose: Array32, speed: Array32, step_s: float) -> None:
     """Drive a step, with the heading at half of it.
 
     Cosine and sine of half the turn are series, to 1e-6 below 0.5 rad.

@@ -15,8 +15,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import PlanarScan
-from navette.navigation.grids import grid_to_message, points_to_message
+from navette.navigation.grids import PlanarScan, grid_to_message, points_to_message
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
 from navette.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns

@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from navette.navigation.costmap.methods import COSTMAPS
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import (
+from navette.navigation.costmap.scan_costmap import ScanCostmap, sensor_grid
+from navette.navigation.grids import (
+    GridSpec,
     PlanarScan,
-    ScanCostmap,
-    sensor_grid,
+    beam_directions,
+    checked_cells,
 )
-from navette.navigation.grids import GridSpec, beam_directions, checked_cells
 from navette.plugins import own_call
 
 

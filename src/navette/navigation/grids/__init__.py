@@ -38,12 +38,21 @@ from navette.navigation.grids.hit_points import (
 from navette.navigation.grids.inflation import cost_table, inflate
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message, grid_to_message
+from navette.navigation.grids.moving_discs import (
+    NO_DISCS,
+    MovingDiscs,
+    disc_outlines,
+    discs_from_message,
+    inside_discs,
+    without_discs,
+)
 from navette.navigation.grids.obstacles import (
     Obstacles,
     ObstacleTracker,
     obstacle_points,
 )
 from navette.navigation.grids.own_cells import checked_cells
+from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import mark_points, point_radius, points_of
@@ -55,6 +64,13 @@ from navette.navigation.grids.unseen import (
 )
 
 __all__ = [
+    "NO_DISCS",
+    "MovingDiscs",
+    "PlanarScan",
+    "disc_outlines",
+    "discs_from_message",
+    "inside_discs",
+    "without_discs",
     "GridSpec",
     "grid_frame",
     "UNKNOWN",

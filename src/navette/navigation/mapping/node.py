@@ -11,15 +11,20 @@ from typing import Any, ClassVar
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
+from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
+    NO_DISCS,
     GridSpec,
     HitPoints,
+    MovingDiscs,
+    discs_from_message,
     grid_from_message,
     grid_to_message,
     placed,
     points_to_message,
+    without_discs,
 )
 from navette.navigation.grids.spec import Cells
 from navette.navigation.mapping.gate import FusionGate
@@ -45,6 +50,10 @@ from navette.runtime.stage.odometry import PoseTracker
 # A stamp this much older than the last fused one belongs to a new run: the simulation
 # was reset, or a bag starts again.
 NEW_RUN_NS = 1_000_000_000
+# Age of the moving obstacles from which they are obsolete, and what is added to their
+# radius: errors of tracking and cells that are partly covered.
+_MOVING_TIMEOUT_S = 0.5
+_MOVING_MARGIN_M = 0.25
 
 
 class MapMemoryNode(StageNode):
@@ -70,6 +79,11 @@ class MapMemoryNode(StageNode):
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
+        ),
+        Input.of(
+            topics.TRACKED_OBSTACLES,
+            "moving obstacles, which leave no trail in the map",
+            callback="on_moving",
         ),
     )
     OUTPUTS: ClassVar = (
@@ -143,6 +157,10 @@ class MapMemoryNode(StageNode):
         self._waiting.add(msg, stamp_ns, self._now_ns())
         self._place_waiting()
 
+    def on_moving(self, msg: ObstacleArray) -> None:
+        """Store the moving obstacles."""
+        self._moving = discs_from_message(msg, self.params.map_frame)
+
     def on_timer(self) -> None:
         """Fuse the newest costmap if the robot moved far enough."""
         if self._newest is not None and self._gate.on_timer(self._newest):
@@ -176,6 +194,7 @@ class MapMemoryNode(StageNode):
 
     def _restart(self) -> None:
         self._motion = STEADY
+        self._moving = MovingDiscs(NO_DISCS, 0)
         self._memory.reset()
         self._gate.reset()
         self._waiting = PlacementQueue[OccupancyGrid](
@@ -209,8 +228,9 @@ class MapMemoryNode(StageNode):
             self._drop("out_of_range", str(error))
             return None
         hits = self._hits.at(ready.stamp_ns)
+        moving = self._moving.at(ready.stamp_ns, _MOVING_TIMEOUT_S)
         return PlacedCostmap(
-            cells,
+            without_discs(cells, there, moving, _MOVING_MARGIN_M),
             there,
             (map_T_sensor.x, map_T_sensor.y),
             ready.map_T_base,

@@ -19,6 +19,7 @@ from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
 from navette.navigation.stack.programs import MakeNode, default_context
+from navette.navigation.tracking.node import TrackingNode
 from navette.runtime import Context, Node, StageNode
 from navette.sim.node import SimNode
 
@@ -26,6 +27,7 @@ FLOW = (
     "sim",
     "localization",
     "costmap",
+    "tracking",
     "mapping",
     "planning",
     "control",
@@ -41,6 +43,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("ekf", EkfNode),
     ("localizer", LocalizerNode),
     ("costmap", CostmapNode),
+    ("tracking", TrackingNode),
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),
     ("control", ControlNode),
@@ -55,6 +58,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
 REPLACEABLE = (
     "localizer",
     "costmap",
+    "tracking",
     "map_memory",
     "planner",
     "control",
@@ -87,6 +91,7 @@ class NavigationStack:
 
     localizer: Node
     costmap: Node
+    tracking: Node
     map_memory: Node
     planner: Node
     control: Node
@@ -122,6 +127,7 @@ class NavigationStack:
         return cls(
             localizer=made("localizer"),
             costmap=made("costmap"),
+            tracking=made("tracking"),
             map_memory=made("map_memory"),
             planner=made("planner"),
             control=made("control"),

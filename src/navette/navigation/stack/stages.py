@@ -111,6 +111,14 @@ def costmap() -> None:
 
 
 @_program
+def tracking() -> None:
+    """Run the tracking of moving obstacles."""
+    from navette.navigation.tracking.node import TrackingNode
+
+    _run_stage("tracking", TrackingNode, "/lidar, /odom/filtered → /tracked_obstacles")
+
+
+@_program
 def map_memory() -> None:
     """Run the map memory."""
     from navette.navigation.mapping.node import MapMemoryNode

@@ -24,6 +24,7 @@ _PROGRAMS = {
         "localizer",
         "costmap",
         "map_memory",
+        "tracking",
         "planner",
         "control",
         "behaviors",

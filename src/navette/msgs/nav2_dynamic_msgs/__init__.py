@@ -1,0 +1,1 @@
+"""Interfaces of nav2_dynamic_msgs."""

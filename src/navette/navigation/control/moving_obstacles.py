@@ -1,0 +1,158 @@
+"""Cost and time of collision with moving obstacles along predicted motion.
+
+Obstacles are discs that keep their velocity; the robot is the disc around its body.
+Both assumptions get worse with time, so that a later collision costs less and the
+clearance that is kept grows.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.control.drive_models import (
+    ACKERMANN,
+    FORWARD,
+    OMNI,
+    SIDE,
+    TURN_RATE,
+)
+from navette.navigation.control.rollouts import move
+from navette.storage.kernels import kernel
+
+Array = NDArray[np.float64]
+Array32 = NDArray[np.float32]
+
+# Cost of a rollout that collides at once; at its end it is a third of that.
+_COLLISION = 400.0
+# Growth of the clearance to be kept: error of the obstacle's velocity, m/s.
+_VELOCITY_ERROR_MPS = 0.1
+_CLEARANCE_WEIGHT = 30.0
+# Shares of a command that are tried, the largest free one is used.
+_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
+_SPAN_S = 2.5
+_STEP_S = 0.1
+
+
+@kernel(nogil=True, fastmath=True)
+def add_moving_costs(
+    commands: Array32,
+    yaw: float,
+    step_s: float,
+    drive: int,
+    discs: Array32,
+    body: tuple[float, float],
+    costs: Array32,
+) -> None:
+    """Add what the samples cost by moving obstacles.
+
+    Args:
+        commands: (T, D, K) that the robot can follow, as of ``rollout_costs``.
+        yaw: of the robot in the map.
+        step_s: time of a step, float32.
+        drive: code of the drive.
+        discs: (M, 5) x, y (relative to the robot), vx, vy, radius.
+        body: radius of the robot's disc, and distance below which closeness costs.
+        costs: (K,), changed.
+    """
+    F = np.float32
+    steps, count = commands.shape[0], costs.shape[0]
+    pose, speed = np.zeros((4, count), np.float32), np.zeros((4, count), np.float32)
+    pose[2], pose[3] = math.cos(yaw), math.sin(yaw)
+    least, free = np.empty(count, np.float32), np.ones(count, np.float32)
+    weight = F(_CLEARANCE_WEIGHT) * step_s
+    for t in range(steps):
+        speed[FORWARD] = commands[t, 0]
+        if drive == OMNI:
+            speed[SIDE], speed[TURN_RATE] = commands[t, 1], commands[t, 2]
+        elif drive == ACKERMANN:
+            speed[TURN_RATE] = commands[t, 0] * commands[t, 1]
+        else:
+            speed[TURN_RATE] = commands[t, 1]
+        move(pose, speed, step_s)
+        time = F(t + 1) * step_s
+        keep = F(body[1]) + F(_VELOCITY_ERROR_MPS) * time
+        least[:] = keep
+        for m in range(discs.shape[0]):
+            x, y = discs[m, 0] + time * discs[m, 2], discs[m, 1] + time * discs[m, 3]
+            _lower_to_disc(pose, x, y, discs[m, 4] + F(body[0]), least)
+        crash = F(_COLLISION * (1.0 - 0.67 * t / steps))
+        for i in range(count):
+            lack = min(F(1.0), (keep - least[i]) / keep)
+            hit = least[i] < F(0.0)
+            costs[i] += free[i] * (weight * lack * lack + (crash if hit else F(0.0)))
+            free[i] = F(0.0) if hit else free[i]
+
+
+@kernel(nogil=True, fastmath=True)
+def _lower_to_disc(
+    pose: Array32, x: float, y: float, reach: float, least: Array32
+) -> None:
+    """Lower the gaps (K,) of the robot to what is left beside one disc."""
+    for i in range(least.size):
+        dx, dy = x - pose[0, i], y - pose[1, i]
+        least[i] = min(least[i], math.sqrt(dx * dx + dy * dy) - reach)
+
+
+@kernel(
+    signature="float64(float64[::1], float64, float64, float64, float64, float64,"
+    " float64[:, ::1])"
+)
+def _first_contact(
+    pose: Array,
+    v: float,
+    omega: float,
+    body: float,
+    margin: float,
+    span: float,
+    discs: Array,
+) -> float:
+    """Return when (s) a constant motion comes within a margin of a disc; ``span``."""
+    x, y, yaw = pose
+    steps = int(span / _STEP_S)
+    now = np.empty(discs.shape[0])
+    for m in range(discs.shape[0]):
+        now[m] = math.hypot(discs[m, 0] - x, discs[m, 1] - y) - discs[m, 4] - body
+    for i in range(1, steps + 1):
+        time = i * _STEP_S
+        middle = yaw + 0.5 * omega * _STEP_S
+        x += v * _STEP_S * math.cos(middle)
+        y += v * _STEP_S * math.sin(middle)
+        yaw += omega * _STEP_S
+        for m in range(discs.shape[0]):
+            dx = discs[m, 0] + time * discs[m, 2] - x
+            dy = discs[m, 1] + time * discs[m, 3] - y
+            gap = math.hypot(dx, dy) - discs[m, 4] - body
+            # An obstacle within the margin may leave it.
+            if gap < min(margin, now[m] - 0.02):
+                return time
+    return span
+
+
+def safe_share(
+    pose: Pose2,
+    motion: tuple[float, float],
+    discs: Array,
+    body_m: float,
+    margin_m: float,
+) -> float:
+    """Return the share of a motion (m/s, rad/s) that yields to moving obstacles.
+
+    The largest share that stays clear for 2.5 s; if none does, the one that stays clear
+    longest.
+    """
+    if not len(discs):
+        return 1.0
+    v, omega = motion
+    start = np.array(pose, np.float64)
+    best_s, best = -1.0, 0.0
+    for share in _SHARES:
+        free_s = _first_contact(
+            start, share * v, share * omega, body_m, margin_m, _SPAN_S, discs
+        )
+        if free_s >= _SPAN_S:
+            return share
+        if free_s > best_s + 1e-9:
+            best_s, best = free_s, share
+    return best

@@ -1,0 +1,239 @@
+"""Moving obstacles from scans: detect change, cluster, associate, filter."""
+
+import math
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.grids import PlanarScan, beam_directions
+from navette.navigation.tracking.clusters import (
+    Cluster,
+    behind_returns,
+    extent,
+    fit_disc,
+    segment,
+)
+from navette.navigation.tracking.free_space import PlacedScan, passed_by
+from navette.navigation.tracking.params import TrackingParams
+from navette.navigation.tracking.tracks import Track, TrackedObstacle, associate
+
+# Ages of the scans with which the newest is compared: fast and slow obstacles.
+_AGES_S = (0.25, 0.75)
+_LEAST_RETURNS = 3
+_LEAST_CHANGED = 3
+# Beams past the predicted centre that show that an obstacle is not there any more.
+_PASSED = 3
+
+
+class MovingObstacles:
+    """Tracks what moves; :meth:`step` takes the scans in the order of their stamps.
+
+    1. Mark the returns that lie where beams of earlier scans passed, and find where
+       earlier returns have vanished.
+    2. Group the returns into clusters; measure the changed ones and those near tracks.
+    3. Associate clusters with predicted tracks; filter; begin and end tracks.
+    """
+
+    def __init__(self, params: TrackingParams) -> None:
+        self.params = params
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all scans and tracks."""
+        self._past: deque[PlacedScan] = deque()
+        self._tracks: list[Track] = []
+        self._number = 0
+        self._beams: tuple[float, float, int] | None = None
+        self._directions = np.empty((0, 2))
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels before the first scan."""
+        scan = PlanarScan(np.ones(8, np.float32), 0.0, 0.1, 0.1, 20.0)
+        for stamp_ns in (0, 300_000_000):
+            self.step(scan, Pose2(0.0, 0.0, 0.0), stamp_ns)
+        self.reset()
+
+    def step(
+        self, scan: PlanarScan, map_T_sensor: Pose2, stamp_ns: int
+    ) -> list[TrackedObstacle]:
+        """Return what moves, at the stamp of the scan."""
+        if self._past and stamp_ns <= self._past[-1].stamp_ns:
+            self.reset()
+        placed, away = self._place(scan, map_T_sensor, stamp_ns)
+        changed, vanished = self._changes(placed)
+        self._past.append(placed)
+        if not self._tracks and not changed.any() and not len(vanished):
+            return []
+        clusters = self._clusters(placed, away, changed, vanished)
+        self._update(placed, clusters)
+        return [track.estimate() for track in self._tracks if track.is_moving]
+
+    def _place(
+        self, scan: PlanarScan, map_T_sensor: Pose2, stamp_ns: int
+    ) -> tuple[PlacedScan, NDArray[np.float64]]:
+        beams = (scan.angle_min, scan.angle_increment, len(scan.ranges))
+        if beams != self._beams:
+            self._beams, self._directions = beams, beam_directions(*beams)
+            self._past.clear()
+        away = scan.ranges.astype(np.float64)
+        reach = min(scan.range_max, self.params.range_m)
+        with np.errstate(invalid="ignore"):
+            valid = (away > scan.range_min) & (away < reach)
+        away[~valid] = 0.0
+        points = map_T_sensor.apply(self._directions * away[:, None])
+        placed = PlacedScan(
+            np.ascontiguousarray(scan.ranges, np.float32),
+            np.ascontiguousarray(points),
+            valid,
+            *map_T_sensor,
+            scan.angle_min,
+            scan.angle_increment,
+            scan.range_max,
+            stamp_ns,
+        )
+        return placed, away
+
+    def _changes(
+        self, placed: PlacedScan
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+        """Return (N,) which returns are new, and points (M, 2) that have vanished."""
+        margin = self.params.free_margin_m
+        changed = np.zeros(len(placed.ranges), np.bool_)
+        oldest_ns = placed.stamp_ns - round(_AGES_S[-1] * 1e9)
+        while len(self._past) > 1 and self._past[1].stamp_ns <= oldest_ns:
+            self._past.popleft()
+        if not self._past:
+            return changed, np.empty((0, 2))
+        for age_s in _AGES_S:
+            past = self._of_age(placed.stamp_ns - round(age_s * 1e9))
+            changed |= passed_by(placed.points, placed.valid, past, margin)
+        gone = passed_by(past.points, past.valid, placed, margin)
+        return changed, past.points[gone]
+
+    def _of_age(self, stamp_ns: int) -> PlacedScan:
+        """Return the newest stored scan that is not newer, else the oldest."""
+        found = self._past[0]
+        for scan in self._past:
+            if scan.stamp_ns > stamp_ns:
+                break
+            found = scan
+        return found
+
+    def _clusters(
+        self,
+        placed: PlacedScan,
+        away: NDArray[np.float64],
+        changed: NDArray[np.bool_],
+        vanished: NDArray[np.float64],
+    ) -> list[Cluster]:
+        """Return the measured clusters that changed or are near a track."""
+        largest = self.params.max_size_m
+        clusters = []
+        runs = segment(placed.points, placed.valid, away, self.params.gap_m)
+        for first, stop in runs[runs[:, 1] - runs[:, 0] >= _LEAST_RETURNS].tolist():
+            new = int(np.count_nonzero(changed[first:stop]))
+            points = placed.points[first:stop][placed.valid[first:stop]]
+            if len(points) < _LEAST_RETURNS:
+                continue
+            if extent(points) > largest:
+                # An obstacle in front of a wall: only what is new of it.
+                if new >= _LEAST_RETURNS:
+                    clusters += self._new_parts(placed, changed, first, stop)
+                continue
+            left = _count_near(vanished, points.mean(axis=0), largest / 2)
+            evidence = new if new >= _LEAST_CHANGED else 0
+            evidence += left if left > _LEAST_CHANGED else 0
+            if evidence or self._is_near_track(points):
+                clusters.append(self._measure(placed, points, evidence))
+        return clusters
+
+    def _new_parts(
+        self, placed: PlacedScan, changed: NDArray[np.bool_], first: int, stop: int
+    ) -> list[Cluster]:
+        """Return the runs of new returns within a run."""
+        found = []
+        edges = np.flatnonzero(np.diff(changed[first:stop].astype(np.int8))) + 1
+        for part in np.split(np.arange(first, stop), edges):
+            if changed[part[0]] and len(part) >= _LEAST_RETURNS:
+                points = placed.points[part]
+                if extent(points) <= self.params.max_size_m:
+                    found.append(self._measure(placed, points, len(part)))
+        return found
+
+    def _measure(
+        self,
+        placed: PlacedScan,
+        points: NDArray[np.float64],
+        changed: int,
+    ) -> Cluster:
+        sensor = (placed.x, placed.y)
+        disc = fit_disc(points, sensor, self.params.max_size_m / 2)
+        track = self._nearest_track(disc[0], disc[1])
+        if track is not None and disc[2] < 0.7 * track.radius_m:
+            # Partly hidden, or too few returns for the circle.
+            disc = behind_returns(points.mean(axis=0), sensor, track.radius_m)
+        return Cluster(*disc, changed)
+
+    def _nearest_track(self, x: float, y: float) -> Track | None:
+        near = [
+            (math.hypot(track.x - x, track.y - y), i)
+            for i, track in enumerate(self._tracks)
+            if track.is_moving
+        ]
+        if not near or min(near)[0] > self.params.gate_m:
+            return None
+        return self._tracks[min(near)[1]]
+
+    def _is_near_track(self, points: NDArray[np.float64]) -> bool:
+        x, y = points.mean(axis=0)
+        reach = self.params.gate_m + self.params.max_size_m / 2
+        return any(abs(t.x - x) < reach and abs(t.y - y) < reach for t in self._tracks)
+
+    def _update(self, placed: PlacedScan, clusters: list[Cluster]) -> None:
+        params = self.params
+        for track in self._tracks:
+            track.predict(placed.stamp_ns, params.acceleration_mps2)
+        matched = associate(self._tracks, clusters, params.gate_m)
+        for i, track in enumerate(self._tracks):
+            if i in matched:
+                track.update(clusters[matched[i]], params)
+            else:
+                track.misses += 1
+        taken = set(matched.values())
+        for j, cluster in enumerate(clusters):
+            if j not in taken and cluster.changed:
+                self._number += 1
+                self._tracks.append(
+                    Track.begin(self._number, cluster, placed.stamp_ns, params)
+                )
+        self._tracks = [
+            track
+            for track in self._tracks
+            if not track.is_over(params) and not self._is_gone(track, placed)
+        ]
+
+    def _is_gone(self, track: Track, placed: PlacedScan) -> bool:
+        """Return whether beams pass where the obstacle should be."""
+        if track.misses < _PASSED:
+            return False
+        dx, dy = track.x - placed.x, track.y - placed.y
+        side = 0.5 * track.radius_m / max(math.hypot(dx, dy), 1e-6)
+        points = np.array(
+            [
+                (track.x + k * side * -dy, track.y + k * side * dx)
+                for k in (-1.0, 0.0, 1.0)
+            ]
+        )
+        passed = passed_by(points, np.ones(3, np.bool_), placed, track.radius_m)
+        return bool(passed.all())
+
+
+def _count_near(
+    points: NDArray[np.float64], centre: NDArray[np.float64], reach_m: float
+) -> int:
+    if not len(points):
+        return 0
+    near = np.abs(points - centre).max(axis=1) <= reach_m
+    return int(np.count_nonzero(near))
