@@ -2,10 +2,12 @@
 
 import html
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from navette.bench.statistics import MeasureDifference, Summary
-from navette.bench.trial import TrialResult
+from navette.bench.report_picture import trial_figure
+from navette.bench.statistics import MeasureDifference, Summary, summarize
+from navette.bench.trial import Trial, TrialResult
 
 _WORST = 12
 _STYLE = """
@@ -26,6 +28,8 @@ th, td { text-align: right; padding: .3rem .6rem;
   border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { text-align: left; } th { color: var(--soft);
   font-weight: 500; font-size: .8rem; }
+td.wide { width: 50%; }
+.world { fill: var(--soft); } .mark { fill: none; stroke: var(--good); }
 .bar { height: .5rem; background: var(--accent); border-radius: .25rem; }
 .tracks { display: grid; gap: 1rem;
   grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); }
@@ -35,37 +39,62 @@ code { font-size: .75rem; overflow-wrap: anywhere; }
 """
 
 
+@dataclass(frozen=True)
+class ReportedRun:
+    """Results of one of what is compared.
+
+    Attributes:
+        name: of the variant; "" without a comparison.
+        results: every trial.
+        summary: over all results.
+        trials: suite, name and seed → trial, where it was driven now.
+    """
+
+    name: str
+    results: Sequence[TrialResult]
+    summary: Summary
+    trials: Mapping[tuple[str, str, int], Trial]
+
+    @classmethod
+    def of(
+        cls, name: str, results: Sequence[TrialResult], trials: Sequence[Trial]
+    ) -> "ReportedRun":
+        own = {(t.suite, t.name, t.seed): t for t in trials if t.variant == name}
+        return cls(name, results, summarize(results), own)
+
+    def trial_of(self, result: TrialResult) -> Trial | None:
+        """Return the trial of a result; None: the result was read from a file."""
+        return self.trials.get((result.suite, result.name, result.seed))
+
+
 def report_page(
-    title: str,
-    summary: Summary,
-    results: Sequence[TrialResult],
-    comparisons: Sequence[MeasureDifference],
-    replay: Sequence[str],
+    title: str, runs: Sequence[ReportedRun], comparisons: Sequence[MeasureDifference]
 ) -> str:
     """Return the page.
 
     Args:
-        title: suite, robot and method.
-        summary: over all results.
-        results: every trial.
-        comparisons: against a baseline; may be empty.
-        replay: for each result the command that repeats it with the live view.
+        title: the suite.
+        runs: one, or the baseline and mine, whose worst trials are drawn.
+        comparisons: of two runs; empty for one.
     """
-    commands = dict(zip(map(id, results), replay, strict=True))
-    worst = sorted(results, key=lambda r: (r.succeeded, r.score, -r.time_s))[:_WORST]
+    mine = runs[-1]
+    worst = sorted(mine.results, key=lambda r: (r.succeeded, r.score, -r.time_s))
     parts = [
         f"<h1>{html.escape(title)}</h1>",
         '<p class="lead">Simulated by Navette; a score of another simulator is not '
         "comparable with that of a leaderboard.</p>",
-        _figures(summary),
-        _losses(summary),
+        *(_figures(each.summary, each.name) for each in runs),
         _comparison(comparisons),
+        _losses(runs),
+        _cpu(runs),
         "<h2>Worst trials</h2>",
+        '<p class="lead">Obstacles at the start, start (ring), goal (cross) and driven '
+        "path. The command drives the trial again in the live view.</p>",
         '<div class="tracks">',
-        *(_figure(each, commands[id(each)]) for each in worst),
+        *(trial_figure(each, mine.trial_of(each)) for each in worst[:_WORST]),
         "</div>",
         "<h2>All trials</h2>",
-        _table(results),
+        _table(mine.results),
     ]
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8">'
@@ -75,67 +104,71 @@ def report_page(
     )
 
 
-def _figures(summary: Summary) -> str:
+def _figures(summary: Summary, name: str) -> str:
     low, high = 100 * summary.success_low, 100 * summary.success_high
     rows = {
         "trials": f"{summary.trials}",
         f"success (95 %: {low:.0f}–{high:.0f} %)": f"{100 * summary.success:.1f} %",
         "contacts": f"{summary.contacts}",
         "score": f"{summary.score:.4f}",
-        "time": f"{summary.time_s:.1f} s",
-        "path / shortest": f"{summary.path_ratio:.2f}",
-        "minimum clearance": f"{summary.min_clearance_m:.3f} m",
+        "time": f"{_known(summary.time_s, 1)} s",
+        "path / shortest": _known(summary.path_ratio, 2),
+        "minimum clearance": f"{_known(summary.min_clearance_m, 3)} m",
+        "jerk": f"{_known(summary.jerk, 2)} m/s³",
     }
     cells = (f"<div><dt>{k}</dt><dd>{v}</dd></div>" for k, v in rows.items())
-    return f"<dl>{''.join(cells)}</dl>"
+    heading = f"<h2>{html.escape(name)}</h2>" if name else ""
+    return f"{heading}<dl>{''.join(cells)}</dl>"
 
 
-def _losses(summary: Summary) -> str:
-    most = max((abs(v) for v in summary.lost_s.values()), default=0.0) or 1.0
+def _losses(runs: Sequence[ReportedRun]) -> str:
+    rows = {each.name: each.summary.lost_s for each in runs}
+    return "<h2>Time lost per trial, s</h2>" + _bars("cause", rows)
+
+
+def _cpu(runs: Sequence[ReportedRun]) -> str:
+    """Return the CPU time of each node, in percent of the simulated time."""
+    rows = {
+        each.name: {k: 100 * v for k, v in each.summary.cpu_share.items()}
+        for each in runs
+    }
+    return "<h2>CPU per node, % of real time</h2>" + _bars("node", rows)
+
+
+def _bars(heading: str, columns: Mapping[str, Mapping[str, float]]) -> str:
+    """Return a table of one number per row and column, with bars for the last."""
+    last = list(columns.values())[-1]
+    names = dict.fromkeys(
+        [*last, *(name for each in columns.values() for name in each)]
+    )
+    most = max((abs(value) for value in last.values()), default=0.0) or 1.0
+    head = "".join(f"<th>{html.escape(name) or 'value'}</th>" for name in columns)
     rows = "".join(
-        f"<tr><td>{html.escape(cause)}</td><td>{seconds:.2f}</td><td>"
-        f'<div class="bar" style="width:{100 * max(0.0, seconds) / most:.0f}%"></div>'
-        "</td></tr>"
-        for cause, seconds in summary.lost_s.items()
+        f"<tr><td>{html.escape(name)}</td>"
+        + "".join(f"<td>{each.get(name, 0.0):.2f}</td>" for each in columns.values())
+        + f'<td class="wide">{_bar(last.get(name, 0.0) / most)}</td></tr>'
+        for name in names
     )
-    return (
-        "<h2>Time lost per trial</h2><table><tr><th>cause</th><th>seconds</th>"
-        f"<th></th></tr>{rows}</table>"
-    )
+    return f"<table><tr><th>{heading}</th>{head}<th></th></tr>{rows}</table>"
+
+
+def _bar(share: float) -> str:
+    return f'<div class="bar" style="width:{100 * max(0.0, share):.0f}%"></div>'
 
 
 def _comparison(comparisons: Sequence[MeasureDifference]) -> str:
     if not comparisons:
         return ""
     rows = "".join(
-        f"<tr><td>{each.measure}</td><td>{each.difference:+.4f}</td>"
+        f"<tr><td>{each.measure}{', worse' if each.is_worse else ''}</td>"
+        f"<td>{each.difference:+.4f}</td>"
+        f"<td>{each.low:+.4f} … {each.high:+.4f}</td>"
         f"<td>{each.p_value:.4f}</td><td>{each.pairs}</td></tr>"
         for each in comparisons
     )
     return (
-        "<h2>Against the baseline</h2><table><tr><th>measure</th><th>difference</th>"
-        f"<th>p</th><th>pairs</th></tr>{rows}</table>"
-    )
-
-
-def _figure(result: TrialResult, command: str) -> str:
-    points = [(x, -y) for x, y in result.track]
-    if not points:
-        return ""
-    xs, ys = zip(*points, strict=True)
-    pad = 0.5
-    box = (min(xs) - pad, min(ys) - pad, max(xs) - min(xs) + 2 * pad,
-           max(ys) - min(ys) + 2 * pad)  # fmt: skip
-    line = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
-    width = max(box[2], box[3]) / 90
-    view = " ".join(f"{value:.2f}" for value in box)
-    return (
-        f'<figure><svg viewBox="{view}" role="img" aria-label="driven path">'
-        f'<polyline points="{line}" fill="none" stroke="var(--accent)" '
-        f'stroke-width="{width:.3f}"/></svg><figcaption>'
-        f"<strong>{html.escape(result.name)}</strong>, seed {result.seed}: "
-        f"{html.escape(result.outcome)}, {result.time_s:.1f} s<br>"
-        f"<code>{html.escape(command)}</code></figcaption></figure>"
+        "<h2>Mine − baseline</h2><table><tr><th>measure</th><th>difference</th>"
+        f"<th>95 % interval</th><th>p</th><th>pairs</th></tr>{rows}</table>"
     )
 
 
@@ -162,3 +195,7 @@ def _ratio(result: TrialResult) -> str:
 
 def _metres(value: float | None) -> str:
     return "–" if value is None else f"{value:.3f}"
+
+
+def _known(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "–"

@@ -1,18 +1,21 @@
 """Run one trial in this process, in virtual time."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.bench import moving_worlds
+from navette.bench.cpu import CpuMeter
 from navette.bench.dynabarn import dynabarn_scene
 from navette.bench.generators import generate
-from navette.bench.losses import lost_seconds
+from navette.bench.losses import detour_loss, lost_seconds
 from navette.bench.observer import TrialObserver
 from navette.bench.trial import Trial, TrialResult, barn_score
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
+from navette.ros2.names.node_classes import node_makers
 from navette.runtime import Stopwatch
 from navette.sim import Scene
 
@@ -24,20 +27,15 @@ def run_trial(trial: Trial) -> TrialResult:
         NavetteError: invalid world, robot or parameter.
     """
     stopwatch = Stopwatch()
-    scene = scene_of(trial.world)
-    options = RunOptions(
-        world="empty" if scene else trial.world,
-        robot=trial.robot,
-        start=trial.start,
-        goals=trial.goals,
-        headless=True,
-        speed=math.inf,
-        seed=trial.seed,
-        params_files=trial.params_files,
-        max_time_s=trial.limit_s,
+    simulation = Simulation(
+        options_of(trial),
+        scene=scene_of(trial.world),
+        replacements=node_makers(trial.replacements) if trial.replacements else None,
     )
-    simulation = Simulation(options, scene=scene, parameters=trial.parameters)
     try:
+        meter = CpuMeter()
+        for node in simulation.context.nodes:
+            meter.watch(node)
         observer = TrialObserver(
             trial.goals[-1],
             trial.reach_m,
@@ -47,9 +45,28 @@ def run_trial(trial: Trial) -> TrialResult:
         )
         simulation.executor.add_node(observer)
         simulation.run()
-        return _measure(trial, simulation, observer, stopwatch.elapsed_s)
+        result = _measure(trial, simulation, observer, stopwatch.elapsed_s)
+        cpu_s = {name: round(s, 4) for name, s in meter.seconds().items()}
+        return replace(result, cpu_s=cpu_s)
     finally:
         simulation.close()
+
+
+def options_of(trial: Trial) -> RunOptions:
+    """Return the options of the run: headless, as fast as possible."""
+    return RunOptions(
+        world=trial.world if scene_of(trial.world) is None else "empty",
+        robot=trial.robot,
+        start=trial.start,
+        goals=trial.goals,
+        headless=True,
+        speed=math.inf,
+        seed=trial.seed,
+        params_files=trial.params_files,
+        methods=trial.methods,
+        parameters=trial.parameters,
+        max_time_s=trial.limit_s,
+    )
 
 
 def scene_of(world: str) -> Scene | None:
@@ -71,6 +88,7 @@ def _measure(
     outcome = _outcome(trial, simulation, observer)
     began_s = 0.0 if observer.began_ns is None else observer.began_ns / 1e9
     time_s = float(samples[-1, 0] - began_s) if len(samples) else 0.0
+    path_m = float(np.hypot(*np.diff(samples[:, 1:3], axis=0).T).sum())
     cruise = simulation.stack.cruise_speed_mps or trial.fastest_mps
     return TrialResult(
         suite=trial.suite,
@@ -82,13 +100,16 @@ def _measure(
             outcome == "reached", time_s, trial.shortest_m, trial.fastest_mps
         ),
         contacts=summary.contacts,
-        path_m=float(np.hypot(*np.diff(samples[:, 1:3], axis=0).T).sum()),
+        path_m=path_m,
         shortest_m=trial.shortest_m,
         min_clearance_m=summary.min_clearance_m,
-        lost_s=lost_seconds(samples, observer.states, cruise),
+        lost_s=lost_seconds(samples, observer.states, cruise)
+        | detour_loss(path_m, trial, cruise, succeeded=outcome == "reached"),
         jerk=_roughness(samples),
         wall_s=wall_s,
         track=np.round(samples[::5, 1:3], 2).tolist(),
+        sim_s=summary.sim_time_s,
+        variant=trial.variant,
     )
 
 

@@ -1,6 +1,7 @@
 """Run trials on all cores; finished ones are kept in a file and not run again."""
 
 import dataclasses
+import functools
 import hashlib
 import json
 import multiprocessing
@@ -14,7 +15,11 @@ from navette.errors import FileFormatError
 
 
 def run_trials(
-    trials: Sequence[Trial], *, jobs: int, results_file: Path | None = None
+    trials: Sequence[Trial],
+    *,
+    jobs: int,
+    results_file: Path | None = None,
+    cluster: str | None = None,
 ) -> Iterator[TrialResult]:
     """Yield the result of every trial, finished ones of the file first.
 
@@ -23,6 +28,7 @@ def run_trials(
         jobs: number of processes.
         results_file: one JSON object per line; results are appended as they arrive,
             so that an interrupted benchmark continues.
+        cluster: address of a Dask scheduler, whose workers run the trials.
 
     Raises:
         FileFormatError: the file has other content.
@@ -33,10 +39,10 @@ def run_trials(
     for trial in trials:
         key = trial_key(trial)
         if key in finished:
-            yield finished[key]
+            yield dataclasses.replace(finished[key], variant=trial.variant)
         else:
             waiting.append(trial)
-    for trial, result in _run(waiting, jobs):
+    for trial, result in _run(waiting, jobs, cluster):
         if results_file is not None:
             row = {"key": trial_key(trial), **dataclasses.asdict(result)}
             with results_file.open("a", encoding="utf-8") as file:
@@ -44,7 +50,16 @@ def run_trials(
         yield result
 
 
-def _run(trials: Sequence[Trial], jobs: int) -> Iterator[tuple[Trial, TrialResult]]:
+def _run(
+    trials: Sequence[Trial], jobs: int, cluster: str | None
+) -> Iterator[tuple[Trial, TrialResult]]:
+    if not trials:
+        return
+    if cluster is not None:
+        from navette.bench.cluster import run_on_cluster
+
+        yield from run_on_cluster(trials, cluster)
+        return
     from navette.bench.run import run_trial
 
     if jobs == 1 or len(trials) <= 1:
@@ -62,9 +77,32 @@ def _run(trials: Sequence[Trial], jobs: int) -> Iterator[tuple[Trial, TrialResul
 
 
 def trial_key(trial: Trial) -> str:
-    """Return a name of the trial that changes with any of its values."""
-    text = json.dumps(dataclasses.asdict(trial), sort_keys=True, default=str)
+    """Return a name of the trial that changes with its values and its files.
+
+    The name of the variant does not change it: the drive is the same.
+    """
+    values = dataclasses.asdict(dataclasses.replace(trial, variant=""))
+    text = json.dumps(values, sort_keys=True, default=str)
+    text += "".join(_digest(file) for file in _files_of(trial))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _files_of(trial: Trial) -> list[Path]:
+    """Return the files that determine a trial."""
+    names = [
+        *trial.methods.values(),
+        *trial.replacements.values(),
+        trial.world,
+        trial.robot or "",
+        *map(str, trial.params_files),
+    ]
+    paths = [Path(part) for name in names for part in (name, name.rpartition(":")[0])]
+    return [path for path in paths if path.suffix and path.is_file()]
+
+
+@functools.cache
+def _digest(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def read_results(file: Path) -> dict[str, TrialResult]:
@@ -75,6 +113,7 @@ def read_results(file: Path) -> dict[str, TrialResult]:
     """
     if not file.exists():
         return {}
+    _drop_partial_line(file)
     results = {}
     with file.open(encoding="utf-8") as lines:
         for number, line in enumerate(lines, 1):
@@ -87,3 +126,10 @@ def read_results(file: Path) -> dict[str, TrialResult]:
                     file, f"not a result of navette bench ({error})", number
                 ) from error
     return results
+
+
+def _drop_partial_line(file: Path) -> None:
+    """Cut off a last line without an end: the program was killed while it wrote."""
+    content = file.read_bytes()
+    if content and not content.endswith(b"\n"):
+        file.write_bytes(content[: content.rfind(b"\n") + 1])

@@ -30,6 +30,9 @@ class Trial:
         fastest_mps: speed of the ideal run in BARN's score.
         parameters: node name → parameter → value, over those of the robot.
         params_files: ROS 2 parameter files, applied last.
+        methods: planner, controller, costmap, mapping → name or place.
+        replacements: node of the stack → the user's class of nodes.
+        variant: name of what is compared; "" without a comparison.
     """
 
     suite: str
@@ -46,6 +49,9 @@ class Trial:
     fastest_mps: float = 2.0
     parameters: dict[str, dict[str, Any]] = field(default_factory=dict)
     params_files: tuple[Path, ...] = ()
+    methods: dict[str, str] = field(default_factory=dict)
+    replacements: dict[str, str] = field(default_factory=dict)
+    variant: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +67,9 @@ class TrialResult:
         lost_s: cause → seconds lost against driving at cruise speed.
         jerk: root mean square change of the acceleration (m/s³); lower is smoother.
         track: every tenth of a second x, y (m, map), for the pictures.
+        cpu_s: node → CPU seconds of its callbacks.
+        sim_s: simulated seconds of the trial.
+        variant: of the trial.
     """
 
     suite: str
@@ -77,6 +86,9 @@ class TrialResult:
     jerk: float
     wall_s: float
     track: list[list[float]] = field(default_factory=list)
+    cpu_s: dict[str, float] = field(default_factory=dict)
+    sim_s: float = math.nan
+    variant: str = ""
 
     @property
     def succeeded(self) -> bool:

@@ -43,7 +43,7 @@ World = Annotated[
     Argument(
         metavar="[WORLD]",
         help="A built-in world (arena, empty, …) or a file: .sdf, .world, .xml (MJCF),"
-        " .urdf, or a ROS map .yaml.",
+        " .urdf, or a ROS map .yaml; or a generated one, as maze:7.",
         complete=complete_worlds,
     ),
 ]

@@ -11,6 +11,7 @@ LIST_OPTIONS = (
     *("--dependencies", "--topics", "--remap"),
     *("--topic-types", "--exclude-topics", "--exclude-topic-types"),
     *("--param-prefixes", "--prefixes"),
+    "--compare",
 )
 _DAEMON_VERBS = (
     "topic",

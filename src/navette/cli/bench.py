@@ -2,8 +2,6 @@
 
 import dataclasses
 import json
-import math
-import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,43 +13,102 @@ from navette.cli.bench_options import BenchOptions, TrialOptions
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from navette.bench.statistics import MeasureDifference, Summary
+    from navette.bench.report import ReportedRun
+    from navette.bench.statistics import MeasureDifference
     from navette.bench.trial import Trial, TrialResult
+
+FAILED = 1
 
 
 def bench(options: BenchOptions) -> None:
     """Drive a set of worlds and measure success, contacts, time and score."""
-    from navette.bench.runner import read_results, run_trials
-    from navette.bench.statistics import compare, summarize
+    from navette.bench.statistics import compare
+    from navette.bench.summary_text import comparison_text, plain, summary_text
 
-    trials = _trials(options.trials)
-    results = run_trials(trials, jobs=options.jobs, results_file=options.results)
-    found = _with_progress(results, trials)
-    summary, against = summarize(found), []
-    if options.compare is not None:
-        against = compare(list(read_results(options.compare).values()), found)
+    runs = _runs(options)
+    mine = runs[-1]
+    against: list[MeasureDifference] = []
+    if len(runs) == 2:
+        against = compare(runs[0].results, mine.results)
+        if not against:
+            raise InvalidValueError(
+                "--compare: the results have no trial in common; the same suite, "
+                "worlds and seeds are compared"
+            )
     if options.report is not None:
-        suite = options.trials.suite
-        _write_report(options.report, suite, summary, found, against, trials)
+        _write_report(options.report, options.trials.suite, runs, against)
     if options.as_json:
-        click.echo(json.dumps(_plain(summary, against)))
+        click.echo(json.dumps(plain(runs, against)))
     else:
-        _print(summary, against)
-    if summary.success < options.min_success:
-        raise click.exceptions.Exit(1)
+        for each in runs:
+            click.echo(summary_text(each.summary, each.name))
+        click.echo(comparison_text(against), nl=False)
+    worse = any(each.is_worse for each in against)
+    if mine.summary.success < options.min_success or worse:
+        raise click.exceptions.Exit(FAILED)
+
+
+def _runs(options: BenchOptions) -> list["ReportedRun"]:
+    """Drive or read what is compared: the baseline first, mine last."""
+    from navette.bench.report import ReportedRun
+    from navette.bench.runner import read_results, run_trials
+    from navette.bench.variants import MINE, is_results_file, renamed, with_variant
+
+    names = options.compare or []
+    if len(names) > 2:
+        raise InvalidValueError(
+            f"--compare {' '.join(names)}: expected BASELINE, or BASELINE MINE"
+        )
+    if len(names) == 1:
+        names = [*names, MINE]
+    base = _trials(options.trials)
+    trials: list[Trial] = []
+    for name in names:
+        if not is_results_file(name):
+            trials += with_variant(base, name)
+    if not names:
+        trials = base
+    results = run_trials(
+        trials,
+        jobs=options.jobs,
+        results_file=options.results,
+        cluster=options.dask,
+    )
+    found = _with_progress(results, trials)
+    runs = []
+    for name in names or [""]:
+        if is_results_file(name):
+            own = renamed(list(read_results(Path(name)).values()), name)
+        else:
+            own = [each for each in found if each.variant == name]
+        if not own:
+            raise InvalidValueError(f"--compare {name!r}: no results in it")
+        runs.append(ReportedRun.of(name, own, trials))
+    return runs
 
 
 def _trials(options: TrialOptions) -> list["Trial"]:
     from navette.bench.suites import suite_trials
+    from navette.bench.variants import absolute_place
 
     worlds = _numbers("--worlds", options.worlds)
-    base = suite_trials(
-        options.suite, data=options.data, worlds=worlds, robot=options.robot
-    )
-    parameters = _parameters(options.param or (), options.controller, options.planner)
+    robot = None if options.robot is None else absolute_place(options.robot)
+    base = suite_trials(options.suite, data=options.data, worlds=worlds, robot=robot)
+    if options.trials is not None and options.seeds:
+        raise InvalidValueError("--trials N and --seeds: expected one of them")
+    seeds = tuple(range(options.trials or 0)) or _numbers("--seeds", options.seeds)
+    methods = options.methods
+    replaced = {k: absolute_place(v) for k, v in methods.replacements.items()}
     return [
-        dataclasses.replace(trial, seed=seed, parameters=parameters)
-        for seed in _numbers("--seeds", options.seeds) or (0,)
+        dataclasses.replace(
+            trial,
+            seed=seed,
+            parameters=methods.parameters,
+            params_files=tuple(path.resolve() for path in options.params or ()),
+            methods={k: absolute_place(v) for k, v in methods.chosen.items()},
+            replacements=replaced,
+        )
+        for seed in seeds or (0,)
         for trial in base
     ]
 
@@ -67,38 +124,27 @@ def _numbers(option: str, text: str) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-def _parameters(
-    assignments: Sequence[str], controller: str | None, planner: str | None
-) -> dict[str, dict[str, Any]]:
-    """Return node → parameter → value of the options.
-
-    Raises:
-        InvalidValueError: not of the form NODE.NAME=VALUE.
-    """
-    from navette.runtime.parameter_files import parse_value
-
-    found: dict[str, dict[str, Any]] = {}
-    for text in assignments:
-        name, equals, value = text.partition("=")
-        node, dot, parameter = name.partition(".")
-        if not (equals and dot and node and parameter):
-            raise InvalidValueError(
-                f"-p {text!r}: expected NODE.NAME=VALUE, as control.cruise_speed_mps=1"
-            )
-        found.setdefault(node, {})[parameter] = parse_value(value)
-    for node, method in (("control", controller), ("planner", planner)):
-        if method is not None:
-            found.setdefault(node, {})["method"] = method
-    return found
-
-
 def _with_progress(results: Any, trials: Sequence["Trial"]) -> list["TrialResult"]:
     """Collect the results in the order of the trials, behind a bar."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     found: list[TrialResult] = []
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     console = Console(stderr=True)
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task("trials", total=len(trials))
@@ -106,89 +152,18 @@ def _with_progress(results: Any, trials: Sequence["Trial"]) -> list["TrialResult
             found.append(result)
             failed = sum(not each.succeeded for each in found)
             progress.update(task, advance=1, description=f"trials, {failed} failed")
-    order = {(t.suite, t.name, t.seed): i for i, t in enumerate(trials)}
-    return sorted(found, key=lambda r: order[r.suite, r.name, r.seed])
-
-
-def replay_command(trial: "Trial") -> str:
-    """Return the command that repeats a trial with the live view."""
-    if trial.suite == "dynabarn":
-        file, _, number = trial.world.removeprefix("dynabarn:").rpartition(":")
-        words = ["navette", "bench", "dynabarn", "--data", str(Path(file).parent)]
-        words += ["--worlds", number, "--seeds", str(trial.seed), "--jobs", "1"]
-        return shlex.join(words)
-    if ":" in trial.world:
-        kind, _, seed = trial.world.partition(":")
-        return f"navette bench {kind} --worlds {seed} --seeds {trial.seed} --jobs 1"
-    words = ["navette", "sim", trial.world, "--seed", str(trial.seed)]
-    if trial.robot is not None:
-        words += ["--robot", trial.robot]
-    if trial.start is not None:
-        x, y, yaw = trial.start
-        words += ["--start", f"{x:g}", f"{y:g}", f"{math.degrees(yaw):g}"]
-    for x, y in trial.goals:
-        words += ["--goal", f"{x:g},{y:g}"]
-    return shlex.join(words)
+    order = {(t.variant, t.suite, t.name, t.seed): i for i, t in enumerate(trials)}
+    return sorted(found, key=lambda r: order[r.variant, r.suite, r.name, r.seed])
 
 
 def _write_report(
     file: Path,
     suite: str,
-    summary: "Summary",
-    results: Sequence["TrialResult"],
+    runs: Sequence["ReportedRun"],
     against: Sequence["MeasureDifference"],
-    trials: Sequence["Trial"],
 ) -> None:
     from navette.bench.report import report_page
 
-    commands = {(t.name, t.seed): replay_command(t) for t in trials}
-    page = report_page(
-        f"navette bench {suite}",
-        summary,
-        results,
-        against,
-        [commands[each.name, each.seed] for each in results],
-    )
+    page = report_page(f"navette bench {suite}", runs, against)
     file.write_text(page, encoding="utf-8")
     sys.stderr.write(f"report: {file}\n")
-
-
-def _print(summary: "Summary", against: Sequence["MeasureDifference"]) -> None:
-    low, high = 100 * summary.success_low, 100 * summary.success_high
-    click.echo(
-        f"trials             {summary.trials}\n"
-        f"success            {100 * summary.success:.1f} %  "
-        f"(95 % interval {low:.1f}–{high:.1f} %)\n"
-        f"contacts           {summary.contacts}\n"
-        f"score              {_known(summary.score, 4)}  (of 0.5; this simulator)\n"
-        f"time               {_known(summary.time_s, 2)} s\n"
-        f"path / shortest    {_known(summary.path_ratio, 2)}\n"
-        f"minimum clearance  {summary.min_clearance_m:.3f} m\n"
-        f"outcomes           {_listed(summary.outcomes)}\n"
-        "lost seconds       "
-        + ", ".join(f"{k} {v:.2f}" for k, v in summary.lost_s.items())
-    )
-    for each in against:
-        click.echo(
-            f"against baseline   {each.measure} {each.difference:+.4f} "
-            f"(p = {each.p_value:.4f}, {each.pairs} pairs)"
-        )
-
-
-def _known(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "–"
-
-
-def _listed(outcomes: dict[str, int]) -> str:
-    return ", ".join(f"{name} {count}" for name, count in outcomes.items())
-
-
-def _plain(
-    summary: "Summary", against: Sequence["MeasureDifference"]
-) -> dict[str, Any]:
-    """Return the summary for JSON; NaN as null."""
-    values = {
-        key: None if isinstance(value, float) and math.isnan(value) else value
-        for key, value in dataclasses.asdict(summary).items()
-    }
-    return values | {"comparison": [dataclasses.asdict(each) for each in against]}

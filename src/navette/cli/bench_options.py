@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from navette.cli.methods import MethodOptions
 from navette.cli.options import Argument, Option
 
 
@@ -34,20 +35,18 @@ class TrialOptions:
     robot: Annotated[
         str | None, Option("--robot", help="Robot to use instead of the suite's.")
     ] = None
-    controller: Annotated[
-        str | None,
-        Option("--controller", help="Method of the controller, such as mppi."),
+    methods: MethodOptions
+    params: Annotated[
+        list[Path] | None,
+        Option(metavar="FILE", help="ROS 2 parameter file. Repeat for several."),
     ] = None
-    planner: Annotated[
-        str | None, Option("--planner", help="Method of the planner.")
-    ] = None
-    param: Annotated[
-        list[str] | None,
+    trials: Annotated[
+        int | None,
         Option(
-            "-p",
-            "--param",
-            metavar="NODE.NAME=VALUE",
-            help="Set a parameter. Repeat for several.",
+            "--trials",
+            metavar="N",
+            help="Drive every world N times, with the seeds 0 … N-1.",
+            min=1,
         ),
     ] = None
     seeds: Annotated[
@@ -55,9 +54,9 @@ class TrialOptions:
         Option(
             "--seeds",
             metavar="N,…",
-            help="Seeds of the noise; every world is driven once per seed.",
+            help="Seeds of the noise; every world is driven once per seed. Default: 0.",
         ),
-    ] = "0"
+    ] = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,9 +75,23 @@ class BenchOptions:
             help="Keep results in this file; trials that it contains are not repeated.",
         ),
     ] = None
+    dask: Annotated[
+        str | None,
+        Option(
+            "--dask",
+            metavar="ADDRESS",
+            help="Run on the workers of this Dask scheduler, as tcp://host:8786.",
+        ),
+    ] = None
     compare: Annotated[
-        Path | None,
-        Option("--compare", help="Compare with the results in this file of --results."),
+        list[str] | None,
+        Option(
+            "--compare",
+            metavar="BASELINE [MINE]",
+            help="Compare two: baseline (the robot's own methods), mine (those of the"
+            " options), settings as controller=mppi,control.cruise_speed_mps=1.5, or a"
+            " file of --results. Exit with 1 if mine is significantly worse.",
+        ),
     ] = None
     report: Annotated[
         Path | None, Option("--report", help="Write a report as HTML.")

@@ -10,6 +10,7 @@ from navette.navigation.stack.options import RunOptions
 
 if TYPE_CHECKING:
     from navette.navigation.stack.simulation import Simulation
+    from navette.sim import Scene
 
 SUCCEEDED = 0
 FAILED = 1
@@ -33,12 +34,24 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
 
             makers = node_makers(options.replacements)
         simulation = Simulation(
-            options, on_change=screen.on_change, replacements=makers
+            options,
+            on_change=screen.on_change,
+            scene=_generated(options.world),
+            replacements=makers,
         )
     try:
         return _drive(simulation, screen, as_json=as_json)
     finally:
         simulation.close()
+
+
+def _generated(world: str) -> "Scene | None":
+    """Return the world ``KIND:SEED`` of a suite of the benchmark; None for another."""
+    if ":" not in world:
+        return None
+    from navette.bench.run import scene_of
+
+    return scene_of(world)
 
 
 def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> int:
