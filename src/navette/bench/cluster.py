@@ -46,7 +46,7 @@ def run_on_cluster(
         # Not pure: equal trials are different runs for the measured times.
         futures = {client.submit(_run_alone, each, pure=False): each for each in trials}
         try:
-            finished: Any = as_completed(futures)
+            finished: Any = as_completed(futures, loop=client.loop)
             for future in finished:
                 yield futures[future], future.result()
         finally:

@@ -5,11 +5,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from navette.bench.replay_command import replay_command
 from navette.bench.report_picture import trial_figure
 from navette.bench.statistics import MeasureDifference, Summary, summarize
 from navette.bench.trial import Trial, TrialResult
 
 _WORST = 12
+_PRINTED = 5  # failed trials, on the terminal
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2630; --soft: #66727f; --line: #d9dee3;
   --page: #fbfbfa; --accent: #c8553d; --good: #3b7d5a; }
@@ -32,8 +34,8 @@ td.wide { width: 50%; }
 .world { fill: var(--soft); } .mark { fill: none; stroke: var(--good); }
 .bar { height: .5rem; background: var(--accent); border-radius: .25rem; }
 .tracks { display: grid; gap: 1rem;
-  grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); }
-figure { margin: 0; } svg { width: 100%; height: 11rem; border: 1px solid var(--line);
+  grid-template-columns: repeat(auto-fill, minmax(16rem, 1fr)); }
+figure { margin: 0; } svg { width: 100%; height: 16rem; border: 1px solid var(--line);
   border-radius: .4rem; } figcaption { font-size: .8rem; color: var(--soft); }
 code { font-size: .75rem; overflow-wrap: anywhere; }
 """
@@ -61,6 +63,16 @@ class ReportedRun:
     ) -> "ReportedRun":
         own = {(t.suite, t.name, t.seed): t for t in trials if t.variant == name}
         return cls(name, results, summarize(results), own)
+
+    def failures(self) -> list[str]:
+        """Return how the first failed trials ended, with what repeats each."""
+        lines = []
+        for each in self.results:
+            trial = self.trial_of(each)
+            if trial is not None and not each.succeeded:
+                what = f"{each.name}, seed {each.seed}: {each.outcome}"
+                lines.append(f"{what}\n  {replay_command(trial)}")
+        return lines[:_PRINTED]
 
     def trial_of(self, result: TrialResult) -> Trial | None:
         """Return the trial of a result; None: the result was read from a file."""

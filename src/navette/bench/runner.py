@@ -1,7 +1,6 @@
 """Run trials on all cores; finished ones are kept in a file and not run again."""
 
 import dataclasses
-import functools
 import hashlib
 import json
 import multiprocessing
@@ -100,7 +99,6 @@ def _files_of(trial: Trial) -> list[Path]:
     return [path for path in paths if path.suffix and path.is_file()]
 
 
-@functools.cache
 def _digest(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 

@@ -42,6 +42,8 @@ def bench(options: BenchOptions) -> None:
     else:
         for each in runs:
             click.echo(summary_text(each.summary, each.name))
+        for line in mine.failures():
+            click.echo(line)
         click.echo(comparison_text(against), nl=False)
     worse = any(each.is_worse for each in against)
     if mine.summary.success < options.min_success or worse:

@@ -1,18 +1,22 @@
 """Statistics, files of results, and the report."""
 
 import dataclasses
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from navette.bench.losses import lost_seconds
-from navette.bench.report import report_page
-from navette.bench.runner import read_results, run_trials
+from navette.bench.losses import detour_loss, lost_seconds
+from navette.bench.replay_command import replay_command
+from navette.bench.report import ReportedRun, report_page
+from navette.bench.runner import read_results, run_trials, trial_key
 from navette.bench.statistics import compare, summarize, wilson_interval
 from navette.bench.trial import Trial, TrialResult
-from navette.errors import FileFormatError
+from navette.bench.variants import with_variant
+from navette.errors import FileFormatError, InvalidValueError
+from navette.geometry import Pose2
 
 
 def result(name: str = "a", **values: object) -> TrialResult:
@@ -73,7 +77,25 @@ def test_a_clear_difference_is_significant_and_noise_is_not() -> None:
     [time] = [c for c in compare(before, faster) if c.measure == "time_s"]
     assert time.difference == pytest.approx(-1, abs=0.5)
     assert time.p_value < 0.01
+    assert time.low < time.difference < time.high < 0
+    assert not time.is_worse
+    [slower] = [c for c in compare(faster, before) if c.measure == "time_s"]
+    assert slower.is_worse
     assert compare(before, [result("other")]) == []
+
+
+def test_success_is_compared_over_all_trials_and_time_where_both_arrived() -> None:
+    before = [result(str(i)) for i in range(20)]
+    after = [
+        dataclasses.replace(r, outcome="stuck", score=0.0, time_s=99.0) if i < 8 else r
+        for i, r in enumerate(before)
+    ]
+    found = {c.measure: c for c in compare(before, after)}
+    assert found["success"].difference == pytest.approx(-0.4)
+    assert found["success"].is_worse
+    assert found["success"].pairs == 20
+    assert found["time_s"].difference == 0.0
+    assert found["time_s"].pairs == 12
 
 
 def test_lost_seconds_are_those_below_cruise_speed() -> None:
@@ -104,9 +126,81 @@ def test_finished_trials_are_read_and_damage_is_named(tmp_path: Path) -> None:
 
 def test_the_report_escapes_names_and_refers_to_nothing_outside() -> None:
     results = [result("<b>"), result("x", outcome="stuck", score=0.0, track=[])]
-    page = report_page("t & u", summarize(results), results, [], ["cmd 1", "cmd 2"])
+    page = report_page("t & u", [ReportedRun.of("", results, [])], [])
     assert "&lt;b&gt;" in page
     assert "<b>" not in page
     assert "t &amp; u" in page
     assert "http" not in page
     assert math.isclose(page.count("<polyline"), 1)
+
+
+TRIAL = Trial(
+    suite="rooms", name="rooms-3", world="rooms:3", robot="jackal",
+    start=Pose2(-7.5, -7.5, 0.5), goals=((7.5, 7.5),), shortest_m=20.0, reach_m=1.0,
+)  # fmt: skip
+
+
+def test_a_detour_is_what_was_driven_beyond_the_shortest_path() -> None:
+    assert detour_loss(21.0, TRIAL, 2.0, succeeded=True) == {"detour": 1.0}
+    assert detour_loss(21.0, TRIAL, 2.0, succeeded=False) == {}
+    unknown = dataclasses.replace(TRIAL, shortest_m=math.nan)
+    assert detour_loss(21.0, unknown, 2.0, succeeded=True) == {}
+
+
+def test_variants_change_methods_and_parameters() -> None:
+    own = dataclasses.replace(
+        TRIAL, methods={"planner": "dijkstra"}, parameters={"control": {"a": 1}}
+    )
+    [mine] = with_variant([own], "mine")
+    assert (mine.methods, mine.variant) == ({"planner": "dijkstra"}, "mine")
+    [base] = with_variant([own], "baseline")
+    assert (base.methods, base.parameters) == ({}, {})
+    [other] = with_variant([own], "controller=mppi,control.b=2.5,robot=husky")
+    assert other.methods == {"planner": "dijkstra", "controller": "mppi"}
+    assert other.parameters == {"control": {"a": 1, "b": 2.5}}
+    assert other.robot == "husky"
+    for text, match in (
+        ("mppi", "expected baseline"),
+        ("wheels=3", "unknown setting 'wheels'; known: planner, controller"),
+    ):
+        with pytest.raises(InvalidValueError, match=match):
+            with_variant([own], text)
+
+
+def test_a_changed_method_is_driven_again(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("one", encoding="utf-8")
+    own = dataclasses.replace(TRIAL, methods={"planner": f"{file}:plan"})
+    assert trial_key(own) == trial_key(dataclasses.replace(own, variant="mine"))
+    before = trial_key(own)
+    file.write_text("another", encoding="utf-8")
+    assert trial_key(own) != before
+
+
+def test_a_result_that_was_half_written_is_dropped(tmp_path: Path) -> None:
+    file = tmp_path / "results.jsonl"
+    whole = json.dumps({"key": "k", **dataclasses.asdict(result())})
+    file.write_text(whole + "\n" + whole[:40], encoding="utf-8")
+    assert list(read_results(file)) == ["k"]
+    assert file.read_text(encoding="utf-8") == whole + "\n"
+
+
+def test_the_replay_command_repeats_the_drive() -> None:
+    own = dataclasses.replace(
+        TRIAL,
+        seed=4,
+        methods={"controller": "my file.py:Mine"},
+        parameters={"control": {"gain": 2.0, "collision_check": False}},
+    )
+    assert replay_command(own) == (
+        "navette sim rooms:3 --robot jackal --start -7.5 -7.5 28.6478897565 "
+        "--goal 7.5,7.5 --seed 4 --controller 'my file.py:Mine' "
+        "-p control.gain=2.0 -p control.collision_check=false"
+    )
+
+
+def test_the_report_draws_the_worst_worlds() -> None:
+    own = result(suite="rooms", name="rooms-3")
+    page = report_page("rooms", [ReportedRun.of("", [own], [TRIAL])], [])
+    assert page.count("<polygon") > 10
+    assert "navette sim rooms:3" in page
