@@ -107,6 +107,15 @@ Tree = Annotated[
         " Nav2. Default: Navette's own (navette tree --default).",
     ),
 ]
+Map = Annotated[
+    Path | None,
+    Option(
+        "--map",
+        metavar="FILE.yaml",
+        help="Plan on this known map, in ROS's format; what the sensors see changes it."
+        " Default: the world is unknown.",
+    ),
+]
 MaxTime = Annotated[
     float | None, Option(metavar="S", help="Stop after this simulated time.")
 ]
@@ -242,6 +251,7 @@ def sim(
     params: ParamsFile = None,
     methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
+    known_map: Map = None,
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
@@ -274,6 +284,7 @@ def sim(
         replacements=methods.replacements,
         parameters=methods.parameters,
         tree=tree,
+        known_map=known_map,
         max_time_s=max_time,
         port=port,
         host=host,

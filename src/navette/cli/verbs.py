@@ -42,6 +42,12 @@ VERBS = (
         panel=DRIVE,
     ),
     LazyCommand(
+        "map",
+        "navette.cli.map:map_",
+        "Save, show and convert maps.",
+        panel=DRIVE,
+    ),
+    LazyCommand(
         "bench",
         "navette.cli.bench:bench",
         "Drive a set of worlds and measure success, contacts, time and score.",

@@ -22,6 +22,7 @@ _JOINING = (
     "completing",
     "doctor.command",
     "lifecycle",
+    "map",
     "node",
     "param.verbs",
     "service.call",

@@ -6,9 +6,11 @@ or transforms they are dropped and the map does not change.
 """
 
 import math
+from pathlib import Path
 from typing import Any, ClassVar
 
-from navette.errors import InvalidInputError, InvalidValueError
+from navette.errors import FileFormatError, InvalidInputError, InvalidValueError
+from navette.geometry.map_files import read_occupancy_map
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
@@ -128,6 +130,8 @@ class MapMemoryNode(StageNode):
         )
         self._map_services = MapServices(self, store)
         self._costmap_services = CostmapServices(self, "global_costmap", source)
+        if self.params.map_file:
+            self._load_file()
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; place the costmaps that waited for it."""
@@ -168,6 +172,11 @@ class MapMemoryNode(StageNode):
 
     def on_params_changed(self, old: MapMemoryParams) -> None:
         """Reset the map if its shape changed; other values apply at once."""
+        if self.params.map_file and self.params.map_file != old.map_file:
+            try:
+                self._load_file()
+            except FileFormatError as error:
+                self.get_logger().error(f"map not loaded: {error}")
         if self.params.update_period_s != old.update_period_s:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
@@ -265,6 +274,11 @@ class MapMemoryNode(StageNode):
         self._memory.load(cells, spec)
         self._gate.reset()
         self._publish_map(self._now_ns())
+
+    def _load_file(self) -> None:
+        known = read_occupancy_map(Path(self.params.map_file).expanduser())
+        height, width = known.cells.shape
+        self._load(known.cells, GridSpec(known.resolution, width, height, known.origin))
 
     def _clear(self, region: ClearedRegion | None) -> None:
         """Clear a region of the map; what is seen now is fused again at once."""

@@ -22,6 +22,10 @@ class MapMemoryParams(Params):
         10.0, "the map grows by multiples of this", unit="m", above=0.0
     )
     max_size_m: float = param(200.0, "largest edge of the map", unit="m", above=0.0)
+    map_file: str = param(
+        "",
+        "map file (YAML of map_server) to start with; scans change it; empty: unknown",
+    )
     fusion: str = param(
         "overwrite",
         "how a costmap is fused: its known cells replace the map's, the larger cost is "

@@ -35,6 +35,7 @@ class RunOptions:
     record_images: bool = False
     overwrite: bool = False
     tree: Path | None = None
+    known_map: Path | None = None
     params_files: tuple[Path, ...] = field(default=())
     methods: Mapping[str, str] = field(default_factory=dict)
     replacements: Mapping[str, str] = field(default_factory=dict)

@@ -117,6 +117,9 @@ class Simulation:
         if self.options.tree is not None:
             tree = {"default_nav_to_pose_bt_xml": str(self.options.tree)}
             overrides.add("missions", tree, "--tree")
+        if self.options.known_map is not None:
+            known = {"map_file": str(self.options.known_map)}
+            overrides.add("map_memory", known, "--map")
         if self.options.record is not None:
             images = {"images": self.options.record_images}
             overrides.add("recorder", images, "--record-images")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from navette.errors import FileFormatError
 from navette.geometry import Pose2
 from navette.geometry.map_files import (
     OccupancyMap,
@@ -73,6 +74,28 @@ def test_a_loaded_map_replaces_the_map(graph: GraphHarness, tmp_path: Path) -> N
     found = graph.call(GetMap, "/map_server/map", GetMap.Request())
     assert found.map == maps.last
     assert load(graph, f"file://{path}").result == LoadMap.Response.RESULT_SUCCESS
+
+
+def test_a_map_file_is_the_map_from_the_start(tmp_path: Path) -> None:
+    path = write_occupancy_map(tmp_path / "hall", LOADED)
+    with GraphHarness() as graph:
+        maps = graph.collect("/map", OccupancyGrid, latched=True)
+        known = [Parameter("map_file", value=str(path))]
+        node = graph.add(
+            MapMemoryNode(context=graph.context, parameter_overrides=known)
+        )
+        graph.run_for(0.1)
+        assert (grid_from_message(maps.last)[0] == CELLS).all()
+        # A file that cannot be read changes nothing.
+        node.set_parameters([Parameter("map_file", value=str(tmp_path / "none"))])
+        graph.run_for(0.1)
+        assert (grid_from_message(maps.last)[0] == CELLS).all()
+
+
+def test_a_missing_map_file_is_an_error(tmp_path: Path) -> None:
+    known = [Parameter("map_file", value=str(tmp_path / "none.yaml"))]
+    with GraphHarness() as graph, pytest.raises(FileFormatError, match=r"none\.yaml"):
+        MapMemoryNode(context=graph.context, parameter_overrides=known)
 
 
 def test_scans_continue_a_loaded_map(graph: GraphHarness, tmp_path: Path) -> None:
