@@ -96,6 +96,10 @@ class Mppi:
         """Forget the command sequence: the robot stands."""
         self._commands[:] = 0.0
 
+    def continue_from(self, other: "Mppi") -> None:
+        """Take over the command sequence of another optimiser of the same drive."""
+        self._commands[:] = other._commands
+
     @property
     def horizon_s(self) -> float:
         """Length of the prediction."""

@@ -140,6 +140,13 @@ class ControlParams(Params):
         0.4, "distance from moving obstacles below which the robot avoids or yields",
         unit="m", at_least=0.0,
     )  # fmt: skip
+    evasion_factor: float = param(
+        1.0,
+        "mppi: factor of reverse speed, turn rate and accelerations near moving "
+        "obstacles",
+        at_least=1.0,
+        at_most=10.0,
+    )
     reaction_s: float = param(
         0.2, "delay from command to motion", unit="s", at_least=0.0
     )

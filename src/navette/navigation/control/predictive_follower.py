@@ -1,6 +1,8 @@
 """Follow a path by model-predictive path integral control."""
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,10 +45,23 @@ _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
 _BLOCKED_SCALE = 0.1
+_BODY_REACH_M = 1.0  # of the robot and the clearance that it keeps
 _BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
 # Rest of the path, turns included, and heading error at which the end is reached.
 _END_M = 0.15
 _END_YAW_RAD = 0.08
+
+
+class _Mode(NamedTuple):
+    """Limits of the motion, with the gate and the optimiser for them."""
+
+    params: ControlParams
+    gate: CommandGate
+    mppi: Mppi
+
+    @classmethod
+    def of(cls, params: ControlParams, body: NDArray[np.float64]) -> "_Mode":
+        return cls(params, CommandGate(params), Mppi(params, body))
 
 
 @CONTROLLERS.register("mppi")
@@ -57,11 +72,14 @@ class PredictiveFollower:
 
     def __init__(self, params: ControlParams) -> None:
         self._params = params
-        self._gate = CommandGate(params)
         self._collision = collision_check(params)
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
-        self._mppi = Mppi(params, self._body)
+        self._calm = _Mode.of(params, self._body)
+        self._evasive = self._calm
+        if params.evasion_factor > 1.0:
+            self._evasive = _Mode.of(evasive(params), self._body)
+        self._mode = self._calm
         self._field = _open_field()
         self._speed_limits = NO_CAP
         self._discs = NO_DISCS
@@ -76,7 +94,7 @@ class PredictiveFollower:
         self._clearance = math.inf
         self._cross_track = self._heading_error = 0.0
         self._scale = 1.0
-        self._mppi.reset()
+        self._mode.mppi.reset()
 
     @property
     def has_path(self) -> bool:
@@ -89,13 +107,13 @@ class PredictiveFollower:
         params = self._params
         return max(
             self._collision.reach(params.max_speed_mps),
-            params.cruise_speed_mps * self._mppi.horizon_s + 0.5,
+            params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5,
         )
 
     @property
     def unseen_reach_m(self) -> float:
         """Distance around the robot within which unseen space matters."""
-        return self._collision.reach(self._params.reverse_speed_mps)
+        return self._collision.reach(self._evasive.params.reverse_speed_mps)
 
     def set_path(self, poses: NDArray[np.float64]) -> None:
         """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
@@ -125,7 +143,7 @@ class PredictiveFollower:
     def pause(self) -> None:
         """Continue later from the robot's motion then, not from the last command."""
         self._last = None
-        self._mppi.reset()
+        self._mode.mppi.reset()
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
@@ -149,7 +167,7 @@ class PredictiveFollower:
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
         """Return the command for the next ``dt`` seconds."""
-        stale = self._gate.stale(inputs.ages)
+        stale = self._mode.gate.stale(inputs.ages)
         if self._rest is not None or stale is not None or not inputs.plausible:
             return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
         assert self._path is not None, "a path is being followed"
@@ -158,27 +176,45 @@ class PredictiveFollower:
         if self._arrived(self._path, inputs):
             return self._stop(self._rest or ControlState.REACHED)
         last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
-        last = clamp(last, self._params)
-        if abs(self._cross_track) > self._params.max_deviation_m:
-            command = brake(last, self._params, dt)
-            return self._emit(command, ControlState.OFF_PATH)
-        self._mppi.limit_speed(self._limits_at(inputs.pose))
+        discs = self._near_discs(inputs.pose)
+        self._choose_mode(self._evasive if len(discs) else self._calm)
+        params = self._mode.params
+        last = clamp(last, params)
+        deviates = abs(self._cross_track) > params.max_deviation_m
+        if deviates and not len(discs):  # to avoid something may require it
+            return self._emit(brake(last, params, dt), ControlState.OFF_PATH)
+        self._mode.mppi.limit_speed(self._limits_at(inputs.pose))
         ahead = advanced(
             inputs.pose, last.speed, last.turn_rate, _DELAY_S, side=last.side
         )
-        wanted = self._mppi.step(
+        wanted = self._mode.mppi.step(
             MotionState(*ahead, *last),
             self._near(self._path),
             self._field,
             dt,
-            self._discs,
+            discs,
         )
-        command = approach(last, wanted, self._params, dt)
+        command = approach(last, wanted, params, dt)
         return self._keep_clear(inputs.pose, command)
+
+    def _near_discs(self, pose: Pose2) -> NDArray[np.float64]:
+        """Return the moving obstacles that the robot can meet within the horizon."""
+        discs = self._discs
+        if not len(discs):
+            return discs
+        away = np.hypot(discs[:, 0] - pose.x, discs[:, 1] - pose.y)
+        speeds = np.hypot(discs[:, 2], discs[:, 3]) + self._params.cruise_speed_mps
+        reach = speeds * self._calm.mppi.horizon_s + discs[:, 4] + _BODY_REACH_M
+        return discs[away <= reach]
+
+    def _choose_mode(self, mode: "_Mode") -> None:
+        if mode is not self._mode:
+            mode.mppi.continue_from(self._mode.mppi)
+            self._mode = mode
 
     def _limits_at(self, pose: Pose2) -> SpeedCap:
         """Return the limits; in reverse also that of space that was never seen."""
-        reverse = min(self._params.reverse_speed_mps, self._speed_limits.reverse)
+        reverse = min(self._mode.params.reverse_speed_mps, self._speed_limits.reverse)
         seen = self._collision.reverse_share(pose, reverse)
         return SpeedCap(self._speed_limits.forward, seen * reverse)
 
@@ -210,7 +246,7 @@ class PredictiveFollower:
     def _near(self, path: PathWindow) -> PathWindow:
         """Return the stretch that the robot can drive within the horizon."""
         first = max(0, self._at - _BEHIND)
-        reach = self._params.cruise_speed_mps * self._mppi.horizon_s + 0.5
+        reach = self._params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5
         stop = int(np.searchsorted(path.measure, path.measure[self._at] + reach)) + 1
         near = slice(first, stop)
         return PathWindow(
@@ -237,12 +273,12 @@ class PredictiveFollower:
         return True
 
     def _stop(self, state: ControlState) -> FollowerOutput:
-        self._mppi.reset()
+        self._mode.mppi.reset()
         return self._emit(STOP, state)
 
     def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
         """Pass the command through the gate and store it as the last one."""
-        refusal = self._gate.refusal(command)
+        refusal = self._mode.gate.refusal(command)
         if refusal is not None:
             command, state = STOP, refusal
         self._last = command if self._rest is None else None
@@ -259,6 +295,22 @@ class PredictiveFollower:
             self._scale,
             LimitedBy.COLLISION_CHECK if self._scale < 1.0 else LimitedBy.NONE,
         )
+
+
+def evasive(params: ControlParams) -> ControlParams:
+    """Return the parameters with the limits for avoiding moving obstacles."""
+    factor = params.evasion_factor
+    return replace(
+        params,
+        reverse_speed_mps=min(
+            factor * params.reverse_speed_mps, params.cruise_speed_mps
+        ),
+        max_turn_rate_radps=factor * params.max_turn_rate_radps,
+        acceleration_mps2=factor * params.acceleration_mps2,
+        deceleration_mps2=factor * params.deceleration_mps2,
+        turn_acceleration_radps2=factor * params.turn_acceleration_radps2,
+        lateral_acceleration_mps2=factor * params.lateral_acceleration_mps2,
+    )
 
 
 def local_field(

@@ -24,6 +24,7 @@ from navette.navigation.grids import (
     discs_from_message,
     grid_from_message,
     grid_to_message,
+    inside_discs,
     placed,
     points_to_message,
     without_discs,
@@ -237,7 +238,10 @@ class MapMemoryNode(StageNode):
             self._drop("out_of_range", str(error))
             return None
         hits = self._hits.at(ready.stamp_ns)
+        points = None if hits is None else map_T_sensor.apply(hits)
         moving = self._moving.at(ready.stamp_ns, _MOVING_TIMEOUT_S)
+        if points is not None and len(moving):
+            points = points[~inside_discs(points, moving, _MOVING_MARGIN_M)]
         return PlacedCostmap(
             without_discs(cells, there, moving, _MOVING_MARGIN_M),
             there,
@@ -245,7 +249,7 @@ class MapMemoryNode(StageNode):
             ready.map_T_base,
             ready.stamp_ns,
             self._motion,
-            None if hits is None else map_T_sensor.apply(hits),
+            points,
         )
 
     def _on_placed(self, costmap: PlacedCostmap) -> None:
