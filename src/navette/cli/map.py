@@ -24,7 +24,7 @@ _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 1
 
 map_ = Group(
     name="map",
-    help="Save, show and convert maps: map.yaml with an image, as ROS has them.",
+    help="Save, show and convert maps.",
 )
 
 MapFile = Annotated[Path, Argument(metavar="FILE.yaml", help="A map file.")]
@@ -155,15 +155,12 @@ def drawing(cells: "NDArray[np.int8]", columns: int) -> list[str]:
 
 
 def _known_part(cells: "NDArray[np.int8]") -> "NDArray[np.int8]":
-    rows, columns = (cells >= 0).any(axis=1), (cells >= 0).any(axis=0)
-    if not rows.any():
+    import numpy as np
+
+    rows, columns = np.nonzero(cells >= 0)
+    if not len(rows):
         return cells
-    low, left = int(rows.argmax()), int(columns.argmax())
-    high, right = (
-        len(rows) - int(rows[::-1].argmax()),
-        len(columns) - int(columns[::-1].argmax()),
-    )
-    return cells[low:high, left:right]
+    return cells[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
 
 
 def _character(above: int, below: int) -> str:

@@ -55,14 +55,14 @@ def test_the_map_of_a_robot_is_saved(here: World, file: Path, tmp_path: Path) ->
 
 def test_saving_without_a_robot_fails(here: World, tmp_path: Path) -> None:
     failed = here.run("map", "save", str(tmp_path / "x"))
-    assert failed.code == 2
+    assert failed.code == 1
     assert "no node has the service map_saver/save_map" in failed.err
 
 
 def test_a_map_that_cannot_be_written_fails(here: World, tmp_path: Path) -> None:
     here.graph.add(MapMemoryNode(context=here.context))
     failed = here.run("map", "save", str(tmp_path / "missing" / "x"))
-    assert failed.code == 2
+    assert failed.code == 1
     assert "the log of /map_saver/save_map has the reason" in failed.err
 
 
@@ -85,7 +85,7 @@ def test_a_file_is_converted(here: World, file: Path, tmp_path: Path) -> None:
     assert read_description(written).mode == "scale"
     np.testing.assert_array_equal(read_occupancy_map(written).cells, CELLS)
     again = here.run("map", "convert", str(file), str(to))
-    assert (again.code, "--overwrite replaces it" in again.err) == (2, True)
+    assert (again.code, "--overwrite replaces it" in again.err) == (1, True)
     here.read("map", "convert", str(file), str(to), "--overwrite", "--image", "png")
     assert read_description(written).mode == "trinary"
 
@@ -104,7 +104,7 @@ def test_a_drawing_fits_into_its_columns(columns: int) -> None:
     cells[:, -1] = 100
     lines = drawing(cells, columns)
     assert max(map(len, lines)) <= columns
-    assert all(line.endswith("█") for line in lines[:-1])
+    assert all(line.endswith(("█", "▄")) for line in lines)
 
 
 def test_a_drawing_of_an_unknown_map() -> None:
