@@ -151,6 +151,6 @@ def set_one(
         is_number = isinstance(number, float)
         assert not is_number or math.isfinite(number), f"{parameter.name} = {number}"
     feed.all()
-    for _ in range(3):
+    for _ in range(2):
         feed.periodic()
         graph.run_for(0.05)

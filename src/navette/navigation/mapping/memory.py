@@ -17,6 +17,7 @@ from navette.navigation.grids import (
     accumulate,
     cells_in_footprint,
     compare,
+    grid_frame,
     mark_points,
     merge,
     points_of,
@@ -51,10 +52,13 @@ class MapRegion(NamedTuple):
 
     def mask(self, spec: GridSpec) -> NDArray[np.bool_]:
         """Return (H, W) which cells of a grid have their centres in the region."""
-        rows, columns = np.mgrid[: spec.height, : spec.width]
-        centers = spec.centers_of(np.stack([rows, columns], axis=-1).reshape(-1, 2))
-        away = np.abs(centers - (self.x, self.y)).max(axis=1)
-        inside = (away <= self.edge / 2).reshape(spec.shape)
+        frame = grid_frame(spec)
+        u = (np.arange(spec.width) + 0.5) * spec.resolution
+        v = ((np.arange(spec.height) + 0.5) * spec.resolution)[:, None]
+        x = frame.x + frame.cos * u - frame.sin * v
+        y = frame.y + frame.sin * u + frame.cos * v
+        near = self.edge / 2
+        inside = (np.abs(x - self.x) <= near) & (np.abs(y - self.y) <= near)
         return np.asarray(inside != self.is_outside)
 
 
