@@ -25,12 +25,12 @@ PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
     "dispatch", "network", "messages", "recording", "stack", "startup", "verbs",
-    "fifty",
+    "fifty", "gym",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",
     "scikit-image", "pyastar2d", "eclipse-zenoh", "rosbags", "mcap-ros2-support",
-    "ir-sim", "pybullet", "zenoh-ros2-sdk",
+    "ir-sim", "pybullet", "zenoh-ros2-sdk", "gymnasium", "highway-env",
 )  # fmt: skip
 
 

@@ -111,7 +111,7 @@ def blocks(page: str, language: str) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", ["parameters.md", "own-robot.md"])
+@pytest.mark.parametrize("page", ["parameters.md", "own-robot.md", "train.md"])
 def test_how_to_output_matches_the_page(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
