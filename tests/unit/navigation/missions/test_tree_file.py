@@ -199,3 +199,24 @@ def test_nav2s_nodes_are_known() -> None:
         SingleTrigger NavigateToPose NavigateThroughPoses IsBatteryLow
     """.split()
     assert set(names) <= set(KINDS)
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        '<Wait _skipIf="battery &lt; 1"/>',
+        '<Sequence _while="{go}"><AlwaysSuccess/></Sequence>',
+        '<SubTree ID="Main" _onSuccess="done:=1"/>',
+        '<Script code="x:=1"/>',
+        '<Action ID="Script" code="x:=1"/>',
+        '<Decorator ID="Precondition" if="x"><AlwaysSuccess/></Decorator>',
+    ],
+)
+def test_scripts_are_refused_by_name(tmp_path: Path, inside: str) -> None:
+    inner = inside.replace('ID="Main"', 'ID="Other"')
+    other = '<BehaviorTree ID="Other"><AlwaysSuccess/></BehaviorTree>'
+    text = whole(inner).replace("</root>", f"{other}</root>")
+    text = text.replace('format="4"', 'format="4" main_tree_to_execute="Main"')
+    error = refused(tmp_path, text)
+    assert "tree.xml:3" in error
+    assert "scripts are not supported; use IfThenElse" in error

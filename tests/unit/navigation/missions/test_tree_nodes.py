@@ -381,3 +381,26 @@ def test_a_halted_tree_starts_again(tmp_path: Path, status: Status) -> None:
     assert tree.robot.calls[1].cancelled is (status is RUNNING)
     tree.tick()
     assert tree.robot.names == ["a", "b", "a"]
+
+
+def test_a_switch_ticks_the_child_of_the_equal_case(tmp_path: Path) -> None:
+    tree = Planted(
+        tmp_path,
+        '<Switch2 variable="{mode}" case_1="dock" case_2="{other}">'
+        f"{wait('a')}{wait('b')}{wait('c')}</Switch2>",
+        mode="dock",
+        other=7,
+    )
+    assert tree.tick() is RUNNING
+    assert tree.robot.names == ["a"]
+    tree.board.set("mode", "7")
+    assert tree.tick() is RUNNING
+    assert tree.robot.names == ["a", "b"]
+    assert tree.robot.calls[0].cancelled
+    tree.robot.calls[1].fail()
+    assert tree.tick() is FAILURE
+    tree.board.set("mode", "elsewhere")
+    assert tree.tick() is RUNNING
+    assert tree.robot.names == ["a", "b", "c"]
+    tree.robot.calls[2].succeed()
+    assert tree.tick() is SUCCESS

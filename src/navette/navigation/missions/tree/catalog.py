@@ -9,6 +9,7 @@ from navette.navigation.missions.tree import (
     own_nodes,
     path_nodes,
     service_nodes,
+    switches,
 )
 from navette.navigation.missions.tree.behaviour import LeafNode
 from navette.navigation.missions.tree.controls import BranchNode
@@ -29,6 +30,7 @@ _MODULES = (
     path_nodes,
     basic_nodes,
     own_nodes,
+    switches,
 )
 
 
@@ -57,6 +59,7 @@ _BASES = {
     decorators.PacedNode,
     service_nodes.CancelNode,
     path_nodes.SelectorNode,
+    switches.SwitchNode,
 }
 
 KINDS: dict[str, Kind] = _kinds()

@@ -25,6 +25,16 @@ from navette.sim.xml_tree import XmlNode, parse_xml
 MAX_NODES = 2000
 MAX_INCLUDES = 16
 _IGNORED = ("name", "ID", "_description", "_uid", "_fullpath")
+# BehaviorTree.CPP's scripts: attributes of any element, and nodes.
+_SCRIPTS = (
+    *("_skipIf", "_failureIf", "_successIf", "_while"),
+    *("_onSuccess", "_onFailure", "_onHalted", "_post"),
+)
+_SCRIPT_NODES = ("Script", "ScriptCondition", "Precondition")
+_INSTEAD = (
+    "scripts are not supported; use IfThenElse, WhileDoElse or Switch with a condition "
+    "node, and SetBlackboard"
+)
 # Attributes of <SubTree> that are not ports.
 _SUBTREE = ("ID", "name", "_autoremap", "__shared_blackboard")
 
@@ -150,6 +160,7 @@ class _Builder:
         uid = self.count
         if uid > MAX_NODES:
             raise element.error(f"more than {MAX_NODES} nodes")
+        _refuse_scripts(element)
         if element.tag == "SubTree":
             return self._subtree(element, blackboard, uid)
         tag, kind = _kind_of(element)
@@ -196,6 +207,15 @@ class _Builder:
             uid=uid,
         )
         return KINDS["SubTree"](setup)
+
+
+def _refuse_scripts(element: XmlNode) -> None:
+    for name in _SCRIPTS:
+        if name in element.attributes:
+            text = element.attributes[name]
+            raise element.error(f"{name}={text!r}: {_INSTEAD}")
+    if element.attributes.get("ID", element.tag) in _SCRIPT_NODES:
+        raise element.error(_INSTEAD)
 
 
 def _flag(element: XmlNode, text: str) -> bool:
