@@ -5,7 +5,9 @@ import math
 import pytest
 
 from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.navigation.stack.simulation import Simulation
+from navette.runtime.action import ActionClient
 from navette.sim import World
 
 from .conftest import MakeSimulation
@@ -83,3 +85,22 @@ def test_an_invalid_goal_while_driving_stops_the_robot(
     send_goal(simulation, math.nan, 0.0, "sim_world")
     simulation.executor.spin_for(2 * SECOND)
     assert speed(simulation) < 0.01
+
+
+@pytest.mark.slow
+def test_an_invalid_goal_of_an_action_is_refused_in_one_line(
+    simulate: MakeSimulation, capfd: pytest.CaptureFixture[str]
+) -> None:
+    simulation = simulate(world="course")
+    client = ActionClient(simulation.monitor, NavigateToPose, "navigate_to_pose")
+    simulation.executor.spin_until(2 * SECOND)
+    goal = NavigateToPose.Goal()
+    goal.pose.header.frame_id = "map"
+    goal.pose.pose.position.x = math.nan
+    goal.pose.pose.orientation.w = 1.0
+    client.send_goal_async(goal)
+    simulation.executor.spin_for(SECOND)
+    assert simulation.progress().state == "goal_not_finite"
+    lines = [line for line in capfd.readouterr().err.splitlines() if "nan" in line]
+    assert len(lines) == 1
+    assert "refused /planner/goal_pose: not_finite" in lines[0]

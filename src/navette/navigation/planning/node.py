@@ -263,6 +263,7 @@ class PlannerNode(StageNode):
         self._navigator.refuse_goal(
             goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
         )
+        self._report(is_logged=True)
         self._publish_news()
 
     def on_cancel(
@@ -449,7 +450,8 @@ class PlannerNode(StageNode):
         if self.has_listeners(topics.PLAN.name):
             self.publish(topics.PLAN.name, path)
 
-    def _report(self) -> None:
+    def _report(self, *, is_logged: bool = False) -> None:
+        """Publish the status; log it if it has changed and was not logged already."""
         report = self._navigator.report
         self._status.report(
             report.message,
@@ -467,7 +469,8 @@ class PlannerNode(StageNode):
         text = f"{report.message} {report.plan}"
         if text != self._logged:
             self._logged = text
-            self._log(report)
+            if not is_logged:
+                self._log(report)
 
     def _log(self, report: NavigatorReport) -> None:
         logger = self.get_logger()

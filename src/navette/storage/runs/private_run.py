@@ -1,6 +1,7 @@
 """A private run of this process: its name, its lock and its entry."""
 
 import os
+import threading
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
@@ -8,13 +9,19 @@ from pathlib import Path
 
 from navette.errors import FileFormatError, InvalidValueError, NetworkError
 from navette.storage.runs.entry import MAX_TEXT, RunInfo, check_run_name
-from navette.storage.runs.folder import make_private, runtime_folder
+from navette.storage.runs.folder import (
+    existing_folders,
+    make_private,
+    runtime_folder,
+)
 from navette.storage.runs.locks import FileLock, is_locked
 from navette.storage.runs.registry import ENTRY, LOCK, RUNS, live_runs
 
 # "/runs/", a name of 24 bytes, "/", and a socket of 13 bytes.
 _LONGEST_PATH = 44
 _SOCKETS = "*.sock.lock"
+# How often, and at which intervals, a name is looked for that is being withdrawn.
+_WITHDRAWALS, _PAUSE_S = 20, 0.02
 
 
 class PrivateRun:
@@ -52,6 +59,9 @@ class PrivateRun:
             folder = runs / candidate
             make_private(folder)
             lock = FileLock.take(folder / LOCK)
+            if lock is not None and _is_claimed_elsewhere(folder):
+                lock.release()
+                lock = None
             if lock is not None:
                 (folder / ENTRY).unlink(missing_ok=True)
                 _remove_sockets_of_killed_programs(folder)
@@ -97,6 +107,26 @@ def _folder_of_runs() -> Path:
     except FileFormatError as error:
         raise NetworkError(f"no private folder: {error}") from error
     return runs
+
+
+def _is_claimed_elsewhere(own: Path) -> bool:
+    """Whether another program holds the run's name in another runtime folder.
+
+    Of two programs that claim a name at the same instant, the one whose folder comes
+    first in the alphabet keeps it: it gives the other one time to withdraw.
+    """
+    pause = threading.Event()
+    for folder in existing_folders():
+        other = folder / RUNS / own.name
+        if other == own:
+            continue
+        for _ in range(_WITHDRAWALS if own < other else 1):
+            if not is_locked(other / LOCK):
+                break
+            pause.wait(_PAUSE_S)
+        else:
+            return True
+    return False
 
 
 def _names(kind: str) -> Iterator[str]:

@@ -5,12 +5,14 @@ import os
 import stat
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
 from navette.errors import FileFormatError, InvalidValueError, NetworkError
-from navette.storage.runs import PrivateRun, RunInfo, live_runs
+from navette.storage.runs import PrivateRun, RunInfo, live_runs, private_run
 from navette.storage.runs import folder as folder_module
 from navette.storage.runs.entry import MAX_BYTES, PROTOCOL, is_run_name
 from navette.storage.runs.folder import make_private
@@ -235,3 +237,45 @@ def test_a_file_in_place_of_the_folder_is_an_error(runtime: Path) -> None:
     (runtime / "runs").touch()
     with pytest.raises(FileFormatError, match="cannot create"):
         make_private(runtime / "runs")
+
+
+def test_claims_at_the_same_instant_in_two_folders_get_two_names(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    folders = [tmp_path / "a", tmp_path / "b"]
+    for folder in folders:
+        make_private(folder)
+        make_private(folder / "runs")
+    monkeypatch.setattr(private_run, "existing_folders", lambda: folders)
+    monkeypatch.setattr(private_run, "live_runs", list)  # neither is published yet
+    own = threading.local()
+    monkeypatch.setattr(private_run, "runtime_folder", lambda longest: own.folder)
+    barrier = threading.Barrier(2)
+
+    def claim(folder: Path) -> PrivateRun:
+        own.folder = folder
+        barrier.wait()
+        return PrivateRun.claim("demo")
+
+    with ThreadPoolExecutor(2) as threads:
+        for _ in range(20):
+            runs = list(threads.map(claim, folders))
+            assert sorted(run.info.name for run in runs) == ["demo", "demo-2"]
+            for run in runs:
+                run.close()
+
+
+def test_a_run_that_is_not_published_yet_keeps_its_name_from_other_folders(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in ("a", "b"):
+        make_private(tmp_path / name)
+    folders = [tmp_path / "a", tmp_path / "b"]
+    monkeypatch.setattr(private_run, "existing_folders", lambda: folders)
+    for first, second in (("a", "b"), ("b", "a")):
+        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / first)  # noqa: B023
+        run = PrivateRun.claim("demo")
+        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / second)  # noqa: B023
+        with pytest.raises(InvalidValueError, match="'demo' exists already"):
+            PrivateRun.claim("demo", name="demo")
+        run.close()

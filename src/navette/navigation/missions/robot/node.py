@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, quaternion_from_yaw
 from navette.msgs import get_interface, topics
 from navette.msgs.action_msgs.msg import GoalStatus
@@ -23,6 +24,7 @@ from navette.navigation.missions.tree.robot_access import (
 )
 from navette.runtime import DurabilityPolicy, QoSProfile
 from navette.runtime.action import ActionClient
+from navette.runtime.input_check import input_check
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import TransformException
@@ -306,11 +308,23 @@ class NodeRobot:
         return made
 
     def _publish_for_others(self, goal: PoseStamped) -> None:
-        """Publish the goal on the topics that a user's planner and viewers receive."""
+        """Publish the goal on the topics that a user's planner and viewers receive.
+
+        Invalid goals are left out: the planner has them, and refuses them once.
+        """
         point = PointStamped(header=goal.header, point=goal.pose.position)
-        self._node.publish(topics.GOAL_POINT.name, point)
-        if has_heading(goal):
+        if _is_valid(topics.GOAL_POINT, point):
+            self._node.publish(topics.GOAL_POINT.name, point)
+        if has_heading(goal) and _is_valid(topics.GOAL_POSE, goal):
             self._node.publish(topics.GOAL_POSE.name, goal)
+
+
+def _is_valid(topic: topics.StackTopic, msg: Any) -> bool:
+    try:
+        input_check(topic.type)(msg)
+    except InvalidInputError:
+        return False
+    return True
 
 
 def has_heading(goal: PoseStamped) -> bool:
