@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from navette.msgs.nav2_msgs.msg import BehaviorTreeLog
+from navette.msgs.nav_msgs.msg import Odometry
 from navette.navigation.stack.simulation import Simulation
 from navette.sim import World
 
@@ -55,7 +56,15 @@ def started(simulation: Simulation) -> list[str]:
     return names
 
 
-LEAVES = {"Navigate", "ClearCostmapAroundRobot", "Spin", "Wait", "AvoidPlace"}
+LEAVES = {
+    "Navigate",
+    "ClearCostmapAroundRobot",
+    "BackUpAlongPath",
+    "Spin",
+    "Wait",
+    "BackUp",
+    "AvoidPlace",
+}
 
 
 @pytest.mark.slow
@@ -100,3 +109,39 @@ def test_a_robot_that_never_moves_gives_up_with_the_reason(
     assert outcome.time_s < 100.0
     assert names.count("Navigate") == 6
     assert {"Spin", "Wait", "AvoidPlace"} <= set(names)
+
+
+@pytest.mark.slow
+def test_a_robot_whose_nose_is_stuck_backs_up_along_its_path_and_arrives(
+    simulate: MakeSimulation, impatient: Path
+) -> None:
+    room = World("room").add_walls((10.0, 10.0))
+    room.add_box((1.6, 0.0), (0.3, 0.2), height=0.2)  # below the plane of the lidar
+    simulation = simulate(
+        scene=room.scene(),
+        robot="jackal",
+        goals=((3.5, 0.0),),
+        params_files=(impatient,),
+        max_time_s=90.0,
+    )
+    names = started(simulation)
+    positions: list[tuple[str, float]] = []
+    simulation.monitor.create_subscription(
+        Odometry,
+        "/ground_truth",
+        lambda msg: positions.append(
+            (names[-1] if names else "", msg.pose.pose.position.x)
+        ),
+        10,
+    )
+    simulation.run()
+    (outcome,) = simulation.summary().goals
+    assert outcome.result == "reached"
+    # The first time the robot goes back by a metre, unless it has driven less; before
+    # it plans around the place it goes back again.
+    first = [x for name, x in positions if name == "BackUpAlongPath"]
+    assert first[0] - first[-1] > 0.8
+    again = [x for name, x in positions if name == "BackUp"]
+    assert again[0] - again[-1] > 0.4
+    assert names.index("BackUpAlongPath") < names.index("AvoidPlace")
+    assert names[-1] == "Navigate"

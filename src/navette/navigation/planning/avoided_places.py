@@ -16,7 +16,6 @@ Point = tuple[float, float]
 # Two goals within this distance are the same goal, sent again.
 _SAME_GOAL_M = 0.3
 _RADIUS_M = 0.4
-_GAP_M = 0.3
 
 
 class AvoidedPlaces:
@@ -37,7 +36,7 @@ class AvoidedPlaces:
             return False
         return self.clear()
 
-    def note_stuck(self, ahead: Poses, front_m: float, gap_m: float = _GAP_M) -> None:
+    def note_stuck(self, ahead: Poses, front_m: float, gap_m: float = 0.0) -> None:
         """Note the path (N, 3) ahead of a stuck robot.
 
         Its body ends at ``front_m``, and what stops it begins ``gap_m`` farther.

@@ -20,9 +20,9 @@ def test_the_place_ahead_becomes_an_obstacle_beyond_the_body() -> None:
     assert places.avoid()
     rows, columns = np.nonzero(places.marked(FREE, SPEC))
     centers = SPEC.centers_of(np.column_stack([rows, columns]))
-    assert np.allclose(centers.mean(axis=0), (2.0, 2.0), atol=0.06)
-    # Beyond the front of the body with a gap.
-    assert centers[:, 0].min() > 1.0 + 0.3 + 0.2
+    assert np.allclose(centers.mean(axis=0), (1.7, 2.0), atol=0.06)
+    # From the front of the body on.
+    assert centers[:, 0].min() > 1.0 + 0.3 - 0.1
     assert not FREE.any()
 
 
