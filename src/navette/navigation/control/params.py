@@ -219,8 +219,9 @@ class ControlParams(Params):
         at_most=10.0,
     )
     idle_zeros: int = param(
-        5, "zero commands published after the robot came to rest", at_least=1
-    )
+        5, "zero commands published after the robot came to rest", at_least=1,
+        at_most=1_000_000,
+    )  # fmt: skip
 
     def check(self) -> None:
         if max(self.cruise_speed_mps, self.reverse_speed_mps) > self.max_speed_mps:

@@ -82,6 +82,7 @@ class MapMemoryParams(Params):
         3,
         "appeared or vanished obstacle cells that count as a contradiction",
         at_least=1,
+        at_most=1_000_000,
     )
     change_period_s: float = param(
         0.2, "least time between such updates", unit="s", at_least=0.0

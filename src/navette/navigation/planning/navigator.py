@@ -175,7 +175,7 @@ class Navigator:
         if self._progress is None or now_ns - self._blocked_ns < _BLOCKED_PERIOD_NS:
             return
         self._checker.spend()
-        self._avoided.note_stuck(self._progress.ahead, self._front_m(), gap_m=0.0)
+        self._avoided.note_stuck(self._progress.ahead, self._front_m())
         if self._checker.exhausted:
             self._finish(Outcome.STUCK)
         else:

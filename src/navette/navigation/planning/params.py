@@ -110,6 +110,7 @@ class PlannerParams(Params):
         40_000,
         "largest number of poses that the search with headings expands",
         at_least=100,
+        at_most=1_000_000,
     )
 
     plan_period_s: float = param(
@@ -126,8 +127,9 @@ class PlannerParams(Params):
         0.2, "least progress along the path that counts", unit="m", above=0.0
     )
     max_stuck_replans: int = param(
-        4, "replans without progress before the goal fails (stuck)", at_least=0
-    )
+        4, "replans without progress before the goal fails (stuck)", at_least=0,
+        at_most=1_000_000,
+    )  # fmt: skip
     goal_timeout_s: float = param(
         0.0, "time for one goal before it fails (timed_out); 0: no limit", unit="s",
         at_least=0.0,

@@ -36,6 +36,7 @@ class DistanceParams(Params):
         "queue size of the subscription; a full queue drops its oldest message, and "
         "bends of the track with it: use more if a bag is played fast",
         at_least=1,
+        at_most=1_000_000,
     )
     max_gap_s: float = param(
         2.0,

@@ -53,7 +53,7 @@ def _threshold(part: str) -> Any:
 
 
 def _queue() -> Any:
-    return param(10, "queue size of the subscription", at_least=1)
+    return param(10, "queue size of the subscription", at_least=1, at_most=1_000_000)
 
 
 _DIFFERENTIAL = "use changes of its pose as velocity instead of its poses"

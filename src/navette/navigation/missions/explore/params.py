@@ -33,8 +33,9 @@ class ExplorerParams(Params):
         above=0.0,
     )  # fmt: skip
     max_failures: int = param(
-        8, "goals that fail one after another before exploration ends", at_least=1
-    )
+        8, "goals that fail one after another before exploration ends", at_least=1,
+        at_most=1_000_000,
+    )  # fmt: skip
 
     @property
     def frontier(self) -> FrontierParams:
