@@ -5,6 +5,7 @@ and until the robot is at rest, then none. A new goal of any behavior preempts t
 active one.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from navette.errors import InvalidInputError, InvalidValueError
@@ -12,6 +13,7 @@ from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.msgs.std_msgs.msg import Empty
 from navette.navigation.behaviors.motions import MeasuredMotion
 from navette.navigation.behaviors.params import BehaviorParams
@@ -40,10 +42,20 @@ class BehaviorNode(StageNode):
             callback="on_odometry",
         ),
         Input.of(
+            topics.COSTMAP_POINTS,
+            "where the beams of the costmap with the same stamp ended",
+            callback="on_costmap_points",
+        ),
+        Input.of(
             topics.COSTMAP,
             "obstacles to keep clear of",
             rate_hz=10.0,
             callback="on_costmap",
+        ),
+        Input.of(
+            topics.MAP_POINTS,
+            "where beams ended, within the lethal cells of the map with the same stamp",
+            callback="on_map_points",
         ),
         Input.of(
             topics.MAP,
@@ -101,6 +113,20 @@ class BehaviorNode(StageNode):
         """Store the newest pose."""
         if self._tracker.update(msg):
             self._located_ns = self._now_ns
+
+    def on_costmap_points(self, msg: PointCloud2) -> None:
+        """Store where the beams of a costmap ended."""
+        self._use_points(self._obstacles.receive_points, msg)
+
+    def on_map_points(self, msg: PointCloud2) -> None:
+        """Store where beams ended, for the map."""
+        self._use_points(self._obstacles.remember_points, msg)
+
+    def _use_points(self, use: Callable[[PointCloud2], None], msg: PointCloud2) -> None:
+        try:
+            use(msg)
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap; it is placed while a goal is active."""

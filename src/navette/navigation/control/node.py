@@ -8,6 +8,7 @@ publishes a zero.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -21,6 +22,7 @@ from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.explanations import (
     EXPLAINED,
@@ -89,11 +91,21 @@ class ControlNode(StageNode):
             callback="on_odometry",
         ),
         Input.of(
+            topics.COSTMAP_POINTS,
+            "where the beams of the costmap with the same stamp ended",
+            callback="on_costmap_points",
+        ),
+        Input.of(
             topics.COSTMAP,
             "obstacles to keep clear of",
             rate_hz=10.0,
             timeout_s=0.19,
             callback="on_costmap",
+        ),
+        Input.of(
+            topics.MAP_POINTS,
+            "where beams ended, within the lethal cells of the map with the same stamp",
+            callback="on_map_points",
         ),
         Input.of(
             topics.MAP,
@@ -214,6 +226,20 @@ class ControlNode(StageNode):
         self._odometry = msg
         self._odometry_ns = self._now_ns
         self._odometry_frame = msg.child_frame_id
+
+    def on_costmap_points(self, msg: PointCloud2) -> None:
+        """Store where the beams of a costmap ended."""
+        self._use_points(self._obstacles.receive_points, msg)
+
+    def on_map_points(self, msg: PointCloud2) -> None:
+        """Store where beams ended, for the map."""
+        self._use_points(self._obstacles.remember_points, msg)
+
+    def _use_points(self, use: Callable[[PointCloud2], None], msg: PointCloud2) -> None:
+        try:
+            use(msg)
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap until the pose at its stamp is available."""

@@ -122,7 +122,7 @@ class ControlParams(Params):
     )  # fmt: skip
     collision_check: bool = param(True, "check each command against the latest costmap")
     collision_margin_m: float = param(
-        0.05, "clearance that every commanded motion keeps", unit="m", at_least=0.0
+        0.025, "clearance that every commanded motion keeps", unit="m", at_least=0.0
     )
     slow_clearance_m: float = param(
         0.3, "clearance below which the robot slows down; 0: never", unit="m",

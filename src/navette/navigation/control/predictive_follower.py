@@ -41,6 +41,8 @@ from navette.navigation.grids import (
     distance_field,
 )
 
+_CELL_M, _FINE_CELL_M = 0.05, 0.02  # of the distance field
+_NEAR_M = 0.12  # clearance below which it has the finer cells
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
@@ -157,8 +159,10 @@ class PredictiveFollower:
     ) -> None:
         """Store the values of :class:`navette.navigation.grids.Obstacles`."""
         self._collision.set_obstacles(points, half_cell, unseen)
+        # Finer cells take longer: only near obstacles.
+        cell = _FINE_CELL_M if self._clearance < _NEAR_M else _CELL_M
         self._field = local_field(
-            points, 2 * half_cell, self._params.mppi_clearance_m + 1.0
+            points, max(cell, 2 * half_cell), self._params.mppi_clearance_m + 1.0
         )
 
     def set_moving(self, discs: NDArray[np.float64]) -> None:

@@ -55,7 +55,12 @@ from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
-from navette.navigation.grids.sub_cells import mark_points, point_radius, points_of
+from navette.navigation.grids.sub_cells import (
+    cell_points,
+    mark_points,
+    point_radius,
+    points_of,
+)
 from navette.navigation.grids.unseen import (
     Layer,
     StartArea,
@@ -118,6 +123,7 @@ __all__ = [
     "points_to_message",
     "points_from_message",
     "mark_points",
+    "cell_points",
     "points_of",
     "point_radius",
     "grid_to_message",

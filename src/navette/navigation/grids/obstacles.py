@@ -10,9 +10,17 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids.alignment import placed
+from navette.navigation.grids.hit_points import HitPoints
 from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.navigation.grids.sub_cells import (
+    Masks,
+    cell_points,
+    mark_points,
+    point_radius,
+)
 from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
 from navette.storage.kernels import kernel
 
@@ -40,8 +48,8 @@ class Obstacles(NamedTuple):
     """What a moving body keeps clear of; metres, map.
 
     Attributes:
-        points: centres (N, 2) of obstacle cells.
-        half_cell: half the edge of their cells.
+        points: (N, 2) where beams ended, or centres of obstacle cells.
+        half_cell: radius of each point: half the edge of a cell, or of a sub-cell.
         unseen: centres (M, 2) of cells near the body that neither map nor costmap has
             seen.
     """
@@ -74,6 +82,9 @@ class ObstacleTracker:
     def reset(self) -> None:
         """Forget all costmaps and the map."""
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._map_ns = 0
+        self._map_masks: tuple[int, Masks] | None = None  # of the map with this stamp
+        self._map_hits, self._hits = HitPoints(), HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._costmap_ns: int | None = None
         #: Arrival of the costmap that was placed last; None before the first.
@@ -90,6 +101,23 @@ class ObstacleTracker:
             InvalidValueError: the map is invalid.
         """
         self._map = grid_from_message(msg)
+        self._map_ns = _stamp_ns(msg)
+
+    def receive_points(self, msg: PointCloud2) -> None:
+        """Use the points for the costmap with the same stamp.
+
+        Raises:
+            InvalidValueError: the cloud is invalid.
+        """
+        self._hits.receive(msg)
+
+    def remember_points(self, msg: PointCloud2) -> None:
+        """Use the points for the map with the same stamp.
+
+        Raises:
+            InvalidValueError: the cloud is invalid.
+        """
+        self._map_hits.receive(msg)
 
     def place(
         self, now_ns: int, lethal_cost: int, reach_m: float, unseen_reach_m: float
@@ -117,18 +145,41 @@ class ObstacleTracker:
         nearby = partial(
             obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m
         )
-        points = nearby(cells, spec, map_T_frame)
         here = Layer(cells, placed(spec, map_T_frame))
-        resolution = spec.resolution
+        hits = self._hits.at(_stamp_ns(msg))
+        if hits is None:
+            points, radius = nearby(cells, spec, map_T_frame), spec.resolution / 2
+        else:
+            points = map_T_frame.apply(hits)
+            away = points - (around.x, around.y)
+            points = points[(away**2).sum(axis=1) <= reach_m**2]
+            radius = point_radius(spec.resolution)
         if self._map is not None:
             known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
-            unseen = ~_is_seen(known, cells, spec, map_T_frame)
-            points = np.concatenate([points, known[unseen]])
-            resolution = max(resolution, self._map[1].resolution)
+            known = known[~_is_seen(known, cells, spec, map_T_frame)]
+            if hits is None:
+                radius = max(radius, self._map[1].resolution / 2)
+            else:
+                known = self._points_of(known, radius)
+            points = np.concatenate([points, known])
         self.placed_ns = self._costmap_ns
-        return Obstacles(
-            points, resolution / 2, self._unseen(here, around, unseen_reach_m)
-        )
+        return Obstacles(points, radius, self._unseen(here, around, unseen_reach_m))
+
+    def _points_of(
+        self, centers: NDArray[np.float64], radius: float
+    ) -> NDArray[np.float64]:
+        """Return points of this radius for lethal cells of the map."""
+        assert self._map is not None, "called with a map"
+        spec = self._map[1]
+        if self._map_masks is None or self._map_masks[0] != self._map_ns:
+            masks = np.zeros(spec.shape, np.uint64)
+            hits = self._map_hits.at(self._map_ns)
+            if hits is not None:
+                mark_points(masks, spec, hits)
+            self._map_masks = self._map_ns, masks
+        uv = spec.origin.inverse().apply(centers) / spec.resolution
+        cells = np.floor(uv[:, ::-1]).astype(np.int64)
+        return cell_points(self._map_masks[1], spec, cells, radius)
 
     def _unseen(
         self, here: Layer, around: Pose2, reach_m: float
@@ -153,6 +204,11 @@ class ObstacleTracker:
         stamp = msg.header.stamp
         map_T_base = self._poses.predicted_at(stamp.sec * 1_000_000_000 + stamp.nanosec)
         return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+
+
+def _stamp_ns(msg: OccupancyGrid) -> int:
+    stamp = msg.header.stamp
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
 def _is_seen(

@@ -14,6 +14,8 @@ from navette.navigation.grids.spec import GridSpec
 SUB_CELLS = 8
 """Sub-cells along an edge of a cell; 64 bits in all."""
 
+_CIRCLE_POINTS = 8
+
 Masks = NDArray[np.uint64]
 Points = NDArray[np.float64]
 
@@ -41,14 +43,30 @@ def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int6
     return np.column_stack(np.divmod(cells, spec.width))
 
 
-def points_of(masks: Masks, spec: GridSpec, cells: NDArray[np.bool_]) -> Points:
-    """Return the marked points (N, 2) of some cells (H, W) in the grid's frame, m."""
-    row, column = np.nonzero(cells & (masks != 0))
+def points_of(masks: Masks, spec: GridSpec, cells: NDArray[np.int64]) -> Points:
+    """Return the marked points (N, 2) of cells (M, 2) in the grid's frame, m."""
+    row, column = cells.T
     bits = np.arange(SUB_CELLS**2, dtype=np.uint64)
     which, bit = np.nonzero((masks[row, column][:, None] >> bits) & np.uint64(1))
     u = column[which] + (bit % SUB_CELLS + 0.5) / SUB_CELLS
     v = row[which] + (bit // SUB_CELLS + 0.5) / SUB_CELLS
     return spec.origin.apply(np.column_stack([u, v]) * spec.resolution)
+
+
+def cell_points(
+    masks: Masks, spec: GridSpec, cells: NDArray[np.int64], radius_m: float
+) -> Points:
+    """Return points (N, 2), m, that with this radius stand for lethal cells (M, 2).
+
+    These are the marked points, and of a cell without one a circle of points about its
+    centre: with the radius they cover the border of half a cell.
+    """
+    unmarked = cells[masks[cells[:, 0], cells[:, 1]] == 0]
+    around = np.arange(_CIRCLE_POINTS) * (2 * np.pi / _CIRCLE_POINTS)
+    away = max(0.0, 0.5 * spec.resolution - radius_m)
+    circle = away * np.column_stack([np.cos(around), np.sin(around)])
+    circles = spec.centers_of(unmarked)[:, None, :] + circle
+    return np.concatenate([points_of(masks, spec, cells), circles.reshape(-1, 2)])
 
 
 def point_radius(resolution: float) -> float:

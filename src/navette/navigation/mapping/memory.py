@@ -179,7 +179,8 @@ class MapMemory:
         A lethal cell without such a point was lethal in a loaded map, or in a costmap
         without points.
         """
-        return points_of(self._masks, self.spec, self._cells >= LETHAL)
+        lethal = (self._cells >= LETHAL) & (self._masks != 0)
+        return points_of(self._masks, self.spec, np.argwhere(lethal))
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
         """Count obstacle cells near the robot that contradict the map."""
