@@ -72,6 +72,7 @@ CMD_VEL_TELEOP = StackTopic("/cmd_vel_teleop", "geometry_msgs/msg/Twist")
 CMD_VEL_ASSISTED = StackTopic("/cmd_vel_assisted", "geometry_msgs/msg/Twist")
 PREEMPT_TELEOP = StackTopic("/preempt_teleop", "std_msgs/msg/Empty")
 CMD_VEL = StackTopic("/cmd_vel", "geometry_msgs/msg/Twist")
+DRIVE = StackTopic("/drive", "ackermann_msgs/msg/AckermannDriveStamped")
 EMERGENCY_STOP = StackTopic("/emergency_stop", "std_msgs/msg/Bool")
 EMERGENCY_STOP_RELEASE = StackTopic("/emergency_stop/release", "std_msgs/msg/Empty")
 EMERGENCY_STOP_ACTIVE = StackTopic(

@@ -101,7 +101,10 @@ def _is_physical(moments: NDArray[np.float64]) -> bool:
     return bool(a > 0 and a + b >= c * (1 - 1e-6))
 
 
-def add_joint(body: mujoco.MjsBody, model: Model, name: str, child: Link) -> None:
+def add_joint(
+    body: mujoco.MjsBody, model: Model, name: str, child: Link, *, degrees: bool
+) -> None:
+    """Add a joint; ``degrees``: the unit of angles in the specification."""
     joint = model.joint(name)
     if joint.kind is JointKind.FIXED:
         return
@@ -122,4 +125,5 @@ def add_joint(body: mujoco.MjsBody, model: Model, name: str, child: Link) -> Non
     added.damping = [joint.damping, 0.0, 0.0]  # linear, no higher powers
     if joint.limits is not None and joint.kind is not JointKind.BALL:
         added.limited = True
-        added.range = joint.limits
+        in_degrees = degrees and joint.kind is JointKind.REVOLUTE
+        added.range = np.degrees(joint.limits) if in_degrees else joint.limits

@@ -20,7 +20,8 @@ from navette.geometry import Transform3
 from navette.sim.drive_geometry import DriveWheel, base_of, drive_wheels
 from navette.sim.masks import ROBOT_GROUP
 from navette.sim.model_builder import ModelBuilder, carrier_of
-from navette.sim.scene import DiffDrive, Model, Scene
+from navette.sim.scene import AckermannDrive, DiffDrive, MecanumDrive, Model, Scene
+from navette.sim.servos import add_servos, traction_name
 
 # By default MuJoCo writes MUJOCO_LOG.TXT to the working directory.
 mujoco.set_mju_user_warning(logging.getLogger(__name__).warning)
@@ -46,6 +47,8 @@ class RobotIndex:
     wheel_qpos: NDArray[np.int64]
     wheel_qvel: NDArray[np.int64]
     actuators: NDArray[np.int64]
+    steering: tuple[int, int] | None  # actuators of an Ackermann drive, left first
+    traction: NDArray[np.int64]  # actuators of a mecanum drive, one for each wheel
     bodies: dict[str, int]  # link name → body
 
 
@@ -79,13 +82,14 @@ def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
     if robot.static or pinned:
         raise InvalidValueError(f"robot {robot.name!r} is fixed to the world")
     spec = _empty_spec(scene, timestep_s)
-    skid = len(drive_wheels(robot)) > 2
+    # A drive of this very kind: the wheels of the others are steered or have rollers.
+    skid = type(robot.drive) is DiffDrive and len(drive_wheels(robot)) > 2
     spec.option.impratio = _TYRE_IMPRATIO if skid else _STIFF_IMPRATIO
     builder = ModelBuilder(spec, scene, _TYRE_SOLIMP if skid else _STIFF_SOLIMP)
     builder.add_ground_if_missing()
     for model in scene.models:
         builder.add_model(model, is_robot=model is robot)
-    builder.add_servos(robot, robot.drive)
+    add_servos(spec, robot, carrier_of(robot, drive_wheels(robot)[0].link))
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -178,8 +182,29 @@ def _index_robot(
         wheel_qpos=np.array([model.jnt_qposadr[j] for j in joints], dtype=np.int64),
         wheel_qvel=np.array([model.jnt_dofadr[j] for j in joints], dtype=np.int64),
         actuators=np.array(servos, dtype=np.int64),
+        steering=_steering(model, robot),
+        traction=np.array(_traction(model, robot, wheels), dtype=np.int64),
         bodies={
             link.name: model.body(f"{robot.name}/{link.name}").id
             for link in robot.links
         },
     )
+
+
+def _steering(model: mujoco.MjModel, robot: Model) -> tuple[int, int] | None:
+    drive = robot.drive
+    if not isinstance(drive, AckermannDrive):
+        return None
+    left, right = drive.left_steering, drive.right_steering
+    return (
+        model.actuator(f"{robot.name}/{left}").id,
+        model.actuator(f"{robot.name}/{right}").id,
+    )
+
+
+def _traction(
+    model: mujoco.MjModel, robot: Model, wheels: tuple[DriveWheel, ...]
+) -> list[int]:
+    if not isinstance(robot.drive, MecanumDrive):
+        return []
+    return [model.actuator(traction_name(robot, wheel)).id for wheel in wheels]

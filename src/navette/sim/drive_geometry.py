@@ -7,17 +7,22 @@ from dataclasses import dataclass
 from navette.errors import InvalidValueError
 from navette.geometry import Transform3, Vector3, quaternion_from_yaw
 from navette.geometry.se3 import rotate
-from navette.sim.scene import Model
+from navette.sim.scene import AckermannDrive, MecanumDrive, Model
 
 
 @dataclass(frozen=True)
 class DriveWheel:
-    """A driven wheel; ``direction`` ±1 is the joint's sign of rolling forward."""
+    """A driven wheel; ``direction`` ±1 is the joint's sign of rolling forward.
+
+    ``slide`` is that of a mecanum wheel: its rim slows down by ``slide`` times the
+    speed of the base to the left; 0 for other wheels.
+    """
 
     joint: str
     link: str
     side: int  # +1 left, −1 right
     direction: float
+    slide: float = 0.0
 
 
 def drive_wheels(model: Model) -> tuple[DriveWheel, ...]:
@@ -29,15 +34,27 @@ def drive_wheels(model: Model) -> tuple[DriveWheel, ...]:
     assert model.drive is not None, "drive_wheels() of a model without a drive"
     left_axis_model = _left_of(model)
     wheels = []
+    slides = isinstance(model.drive, MecanumDrive)
     for side, names in ((1, model.drive.left_joints), (-1, model.drive.right_joints)):
-        for name in names:
+        for index, name in enumerate(names):
             joint = model.joint(name)
             axis_model = rotate(joint.model_T_joint.rotation, joint.axis)
             along = sum(a * b for a, b in zip(axis_model, left_axis_model, strict=True))
-            wheels.append(
-                DriveWheel(name, joint.child, side, math.copysign(1.0, along))
-            )
+            direction = math.copysign(1.0, along)
+            # The rollers of front left and back right point forward and right.
+            slide = (side if index == 0 else -side) if slides else 0.0
+            wheels.append(DriveWheel(name, joint.child, side, direction, slide))
     return tuple(wheels)
+
+
+def rolling_links(model: Model) -> set[str]:
+    """Return the links of all wheels: driven ones and those on steered links."""
+    links = {wheel.link for wheel in drive_wheels(model)}
+    if isinstance(model.drive, AckermannDrive):
+        names = model.drive.left_steering, model.drive.right_steering
+        steered = {model.joint(name).child for name in names}
+        links |= {j.child for j in model.joints if j.parent in steered}
+    return links
 
 
 def base_of(model: Model) -> Transform3:

@@ -1,14 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Adds the models of a scene to a MuJoCo specification."""
 
+from dataclasses import replace
+
 import mujoco
 
 from navette.errors import InvalidValueError
 from navette.geometry import Transform3
 from navette.sim.bodies import add_cameras, add_joint, set_inertia, tyre_of, wxyz
-from navette.sim.drive_geometry import drive_wheels
+from navette.sim.drive_geometry import rolling_links
 from navette.sim.masks import FREE, GROUND, OBSTACLE, ROBOT_GROUP, SOLID, group_of
-from navette.sim.scene import DiffDrive, Geometry, JointKind, Link, Model, Plane, Scene
+from navette.sim.scene import (
+    Geometry,
+    JointKind,
+    Link,
+    MecanumDrive,
+    Model,
+    Plane,
+    Scene,
+)
 from navette.sim.shape_geoms import add_geom, friction_of
 
 _SERVO_TIME_S = 0.002  # time constant of the wheel speed servo; a longer one droops
@@ -135,18 +145,23 @@ class ModelBuilder:
                 is_robot=is_robot,
                 moves=joint.kind is not JointKind.FIXED,
             )
-            add_joint(inner, model, joint.name, child)
+            add_joint(
+                inner, model, joint.name, child, degrees=self.spec.compiler.degree
+            )
         return body
 
     def _add_geometries(
         self, body: mujoco.MjsBody, model: Model, link: Link, *, is_robot: bool
     ) -> None:
-        wheels = {w.link for w in drive_wheels(model)} if is_robot else set()
+        wheels = rolling_links(model) if is_robot else set()
+        slides = isinstance(model.drive, MecanumDrive)
         for geometry in link.geometries:
             affinity = GROUND | OBSTACLE | FREE if geometry.collides else 0
             tyre = tyre_of(geometry) if link.name in wheels else None
             if tyre is not None:
                 affinity = OBSTACLE | FREE
+                # The rollers of a mecanum wheel roll: servos.py adds their traction.
+                tyre = replace(tyre, friction=0.0) if slides else tyre
                 self._add_tyre(body, model, link, tyre)
             friction = friction_of(geometry.friction)
             add_geom(
@@ -176,28 +191,6 @@ class ModelBuilder:
             priority=1,
             solimp=self.tyre_solimp,
         )
-
-    def add_servos(self, robot: Model, drive: DiffDrive) -> None:
-        """Add a speed servo to each driven wheel, with a gain that suits its load."""
-        mass = sum(link.inertial.mass if link.inertial else 0.0 for link in robot.links)
-        wheels = drive_wheels(robot)
-        for wheel in wheels:
-            own = robot.link(wheel.link).inertial
-            spin = max(own.inertia[:3]) if own else 0.0
-            load = mass * drive.wheel_radius**2 / len(wheels) + spin
-            servo = self.spec.add_actuator(
-                name=f"{robot.name}/{wheel.joint}",
-                target=f"{robot.name}/{wheel.joint}",
-                trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            )
-            servo.set_to_velocity(kv=load / _SERVO_TIME_S)
-            # The rotor inertia of a geared motor is about that of the load.
-            # Without it the implicit integrator, stiff servo and light wheel make
-            # the wheel slip when it brakes, and the body rocks.
-            self.spec.joint(f"{robot.name}/{wheel.joint}").armature = load
-            if drive.max_wheel_torque is not None:
-                servo.forcelimited = True
-                servo.forcerange = [-drive.max_wheel_torque, drive.max_wheel_torque]
 
 
 def actor_name(model: Model) -> str:

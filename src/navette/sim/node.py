@@ -4,8 +4,10 @@
 from collections.abc import Callable
 from typing import Any
 
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3
 from navette.msgs import topics
+from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import Bool, Empty, String
@@ -45,6 +47,11 @@ class SimNode(StageNode):
             "commanded velocity; clamped to the limits, zero after the timeout",
             other_types=("geometry_msgs/msg/TwistStamped",),
             callback="on_cmd_vel",
+        ),
+        Input.of(
+            topics.DRIVE,
+            "speed and steering angle of an Ackermann drive, beside /cmd_vel",
+            callback="on_drive",
         ),
         Input.of(
             topics.EMERGENCY_STOP,
@@ -130,7 +137,19 @@ class SimNode(StageNode):
         if self._is_stopped:
             return
         twist = msg.twist if isinstance(msg, TwistStamped) else msg
-        self.simulator.command(twist.linear.x, twist.angular.z)
+        self.simulator.command(twist.linear.x, twist.angular.z, twist.linear.y)
+
+    def on_drive(self, msg: AckermannDriveStamped) -> None:
+        """Apply speed and steering angle; an invalid command is dropped."""
+        if not self.simulator.has_steering:
+            raise InvalidInputError(
+                "no_steering",
+                f"{topics.DRIVE.name} is for robots with steered wheels; use "
+                f"{topics.CMD_VEL.name}",
+            )
+        self._advance()
+        if not self._is_stopped:
+            self.simulator.steer(msg.drive.speed, msg.drive.steering_angle)
 
     def on_emergency_stop(self, msg: Bool) -> None:
         """Stop and ignore commands until the release."""
@@ -280,7 +299,9 @@ class SimNode(StageNode):
             return self.simulator.pose(), self.simulator.motion(), None
         wheels = self.simulator.wheel_odometry()
         reported = wheels.motion()
-        motion = Motion((reported.speed, 0.0, 0.0), (0.0, 0.0, reported.yaw_rate))
+        motion = Motion(
+            (reported.speed, reported.side, 0.0), (0.0, 0.0, reported.yaw_rate)
+        )
         covariances = PlanarCovariances(wheels.pose_covariance, reported.covariance)
         return Transform3.from_pose2(wheels.pose), motion, covariances
 

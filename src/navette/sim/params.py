@@ -37,6 +37,13 @@ class SimParams(Params):
         2.0, "maximum yaw acceleration", unit="rad/s²", above=0.0
     )
 
+    max_side_speed_mps: float = param(
+        1.0, "mecanum: fastest to the left and to the right", unit="m/s", above=0.0
+    )
+    max_steering_rate_radps: float = param(
+        3.0, "Ackermann: fastest change of the steering angle", unit="rad/s", above=0.0
+    )
+
     odometry: str = param(
         "true",
         "source of /odom/filtered: true pose, or dead reckoning by the wheels",

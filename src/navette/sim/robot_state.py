@@ -37,6 +37,7 @@ class RobotState:
         self._root_T_base = robot.root_T_model @ robot.model_T_base
         self._base_T_root = self._root_T_base.inverse()
         self._direction = np.array([wheel.direction for wheel in robot.wheels])
+        self._slide = np.array([wheel.slide for wheel in robot.wheels])
         self._left = np.array([wheel.side > 0 for wheel in robot.wheels])
 
     def pose(self) -> Transform3:
@@ -76,6 +77,11 @@ class RobotState:
         """Mean forward rotation of the left and the right wheels (rad)."""
         angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
         return float(angles[self._left].mean()), float(angles[~self._left].mean())
+
+    def wheel_slide(self) -> float:
+        """Rotation (rad) of mecanum wheels that moves the base to the left."""
+        angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
+        return -float((angles * self._slide).mean())
 
     def wheel_joints(self) -> JointReadings:
         """Angles and speeds of the drive wheels' joints."""

@@ -6,6 +6,7 @@ are metres, angles radians, masses kilograms. All poses inside a model are resol
 to the model's frame, so that the rules of SDF and URDF end at the readers.
 """
 
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -205,6 +206,34 @@ class DiffDrive:
     wheel_radius: float
     limits: SpeedLimits = SpeedLimits()
     max_wheel_torque: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AckermannDrive(DiffDrive):
+    """Wheels driven at the rear and steered in front.
+
+    ``wheel_separation`` is the track of the driven wheels, ``kingpin_width`` the
+    distance between the axes of the left and the right steering joint.
+    """
+
+    left_steering: str
+    right_steering: str
+    wheel_base: float
+    kingpin_width: float
+    steering_limit: float
+
+    def curvature_of(self, steering: float) -> float:
+        """Return the curvature (1/m) of the base's path at a steering angle (rad)."""
+        return math.tan(steering) / self.wheel_base
+
+
+@dataclass(frozen=True, kw_only=True)
+class MecanumDrive(DiffDrive):
+    """Four wheels with rollers at 45°, in an X from above; the front ones first.
+
+    ``wheel_separation`` is the sum of track and wheel base: with it the formulas of a
+    differential drive give speed and yaw rate.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)

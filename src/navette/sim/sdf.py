@@ -13,6 +13,7 @@ from navette.geometry import Transform3, Vector3
 from navette.geometry.se3 import rotate
 from navette.sim.limits import check_parts
 from navette.sim.scene import (
+    AckermannDrive,
     DiffDrive,
     Geometry,
     Joint,
@@ -292,6 +293,12 @@ def _lift_joint(joint: Joint, inner: str, model_T_inner: Transform3) -> Joint:
 
 
 def _lift_drive(drive: DiffDrive, inner: str) -> DiffDrive:
+    if isinstance(drive, AckermannDrive):
+        drive = replace(
+            drive,
+            left_steering=f"{inner}::{drive.left_steering}",
+            right_steering=f"{inner}::{drive.right_steering}",
+        )
     return replace(
         drive,
         left_joints=tuple(f"{inner}::{name}" for name in drive.left_joints),

@@ -3,15 +3,18 @@
 
 import math
 from collections.abc import Iterable
-from typing import TypedDict
+from dataclasses import fields
+from typing import Any, TypedDict
 
 from navette.geometry import Transform3
 from navette.sim.scene import (
+    AckermannDrive,
     CameraSensor,
     ContactSensor,
     DiffDrive,
     ImuSensor,
     LidarSensor,
+    MecanumDrive,
     Sensor,
     SpeedLimits,
 )
@@ -187,6 +190,16 @@ def _stddev(node: XmlNode | None) -> float:
     return stddev
 
 
+_DRIVES = {
+    "ackermann": ("ackermannsteering", "ackermann-steering", "ackermann_drive"),
+    "mecanum": ("mecanumdrive", "mecanum-drive", "mecanum_drive"),
+    "diff": (
+        *("diffdrive", "diff-drive", "diff_drive"),
+        *("skid_steer", "skidsteer"),
+    ),
+}
+
+
 def find_drive(
     plugins: Iterable[XmlNode], unsupported: Unsupported
 ) -> DiffDrive | None:
@@ -208,9 +221,7 @@ def note_plugin(plugin: XmlNode, unsupported: Unsupported) -> None:
 
 def _is_drive(plugin: XmlNode) -> bool:
     text = _plugin_name(plugin)
-    return any(key in text for key in ("diffdrive", "diff-drive", "diff_drive")) or (
-        "skid_steer" in text or "skidsteer" in text
-    )
+    return any(key in text for kind in _DRIVES.values() for key in kind)
 
 
 def _is_replaced(plugin: XmlNode) -> bool:
@@ -224,7 +235,79 @@ def _plugin_name(plugin: XmlNode) -> str:
 
 
 def read_drive(plugin: XmlNode) -> DiffDrive:
-    """Read a differential or skid-steer plugin: wheel joints, geometry and limits."""
+    """Read the plugin of a drive: wheel joints, geometry and limits.
+
+    Gazebo's differential, skid-steer, AckermannSteering and MecanumDrive plugins.
+    """
+    text = _plugin_name(plugin)
+    if any(key in text for key in _DRIVES["mecanum"]):
+        return _read_mecanum(plugin)
+    drive = _read_wheels(plugin)
+    if any(key in text for key in _DRIVES["ackermann"]):
+        return _read_ackermann(plugin, drive)
+    return drive
+
+
+def _read_ackermann(plugin: XmlNode, drive: DiffDrive) -> AckermannDrive:
+    left = _joints(plugin, "left_steering")
+    right = _joints(plugin, "right_steering")
+    base = _first(plugin, ("wheel_base", "wheelbase"))
+    limit = _first(plugin, ("steering_limit",))
+    if len(left) != 1 or len(right) != 1:
+        raise plugin.error(
+            "Ackermann steering needs one <left_steering_joint> and one "
+            "<right_steering_joint>"
+        )
+    if base is None or limit is None or base <= 0 or not 0 < limit < 1.5:
+        raise plugin.error("<wheel_base> must be > 0, <steering_limit> 0 … 1.5 rad")
+    if len(drive.left_joints) != 1 or len(drive.right_joints) != 1:
+        raise plugin.error(
+            "Ackermann steering needs one <left_joint> and one <right_joint>: the "
+            "driven wheels at the rear"
+        )
+    return AckermannDrive(
+        **_fields(drive),
+        left_steering=left[0],
+        right_steering=right[0],
+        wheel_base=base,
+        kingpin_width=_first(plugin, ("kingpin_width",)) or drive.wheel_separation,
+        steering_limit=limit,
+    )
+
+
+def _read_mecanum(plugin: XmlNode) -> MecanumDrive:
+    names = [
+        _joints(plugin, f"{end}_{side}")
+        for side in ("left", "right")
+        for end in ("front", "back")
+    ]
+    if any(len(each) != 1 for each in names):
+        raise plugin.error(
+            "a mecanum drive needs <front_left_joint>, <front_right_joint>, "
+            "<back_left_joint> and <back_right_joint>"
+        )
+    front_left, back_left, front_right, back_right = (each[0] for each in names)
+    track = _first(plugin, ("wheel_separation",))
+    base = _first(plugin, ("wheelbase", "wheel_base"))
+    radius = _first(plugin, ("wheel_radius",))
+    if not (track and base and radius) or min(track, base, radius) <= 0:
+        raise plugin.error(
+            "<wheel_separation>, <wheelbase> and <wheel_radius> must be > 0"
+        )
+    return MecanumDrive(
+        left_joints=(front_left, back_left),
+        right_joints=(front_right, back_right),
+        wheel_separation=track + base,
+        wheel_radius=radius,
+        limits=_limits(plugin),
+    )
+
+
+def _fields(drive: DiffDrive) -> dict[str, Any]:
+    return {each.name: getattr(drive, each.name) for each in fields(drive)}
+
+
+def _read_wheels(plugin: XmlNode) -> DiffDrive:
     left = _joints(plugin, "left")
     right = _joints(plugin, "right")
     if not left or not right:

@@ -21,13 +21,19 @@ from navette.sim.build import compile_scene
 from navette.sim.camera import Image
 from navette.sim.clearance import Clearance, ClearanceProbe
 from navette.sim.contacts import ContactMonitor
-from navette.sim.drive import CONTROL_PERIOD_NS, SpeedRamp
+from navette.sim.drive import (
+    CONTROL_PERIOD_NS,
+    SteeringRamp,
+    make_ramp,
+    rim_speed,
+    steering_angles,
+)
 from navette.sim.imu import ImuReading
 from navette.sim.lidar import Scan
 from navette.sim.outlines import outlines_of
 from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
-from navette.sim.scene import Scene
+from navette.sim.scene import AckermannDrive, Scene
 from navette.sim.sensors import cameras_of, imus_of, lidars_of
 from navette.sim.wheel_odometry import WheelOdometry
 
@@ -68,7 +74,7 @@ class Simulator:
         self.actors = Actors(self.compiled)
         self.actors.place(self._data, 0)
         self._start = start
-        self._ramp = SpeedRamp(self.params)
+        self._ramp = make_ramp(self.params, self.compiled.robot.drive)
         self.state = RobotState(self.compiled.robot, self._data)
         mujoco.mj_kinematics(self.compiled.model, self._data)
         self._probe = ClearanceProbe(self.compiled, self._data)
@@ -109,7 +115,9 @@ class Simulator:
             self.state.place(Transform3.from_pose2(self._start, z=floor))
         for imu in self.imus:
             imu.reset()
-        self._wheel_odometry.reset(self.pose().to_pose2(), self.state.wheel_travel())
+        self._wheel_odometry.reset(
+            self.pose().to_pose2(), self.state.wheel_travel(), self.state.wheel_slide()
+        )
         self._check_start()
 
     def _check_start(self) -> None:
@@ -147,9 +155,27 @@ class Simulator:
     def now_ns(self) -> int:
         return self._steps * self._step_ns
 
-    def command(self, linear: float, angular: float) -> bool:
-        """Set the commanded velocity (m/s, rad/s); False if it is not finite."""
-        return self._ramp.command(linear, angular, self.now_ns)
+    def command(self, linear: float, angular: float, side: float = 0.0) -> bool:
+        """Set the commanded velocity (m/s, rad/s, m/s); False if it is not finite.
+
+        ``side`` is the speed to the left, for a drive that moves sideways.
+        """
+        return self._ramp.command(linear, angular, self.now_ns, side=side)
+
+    @property
+    def has_steering(self) -> bool:
+        """Whether :meth:`steer` is possible."""
+        return isinstance(self._ramp, SteeringRamp)
+
+    def steer(self, speed: float, steering: float) -> bool:
+        """Set speed (m/s) and steering angle (rad); False if not finite.
+
+        Raises:
+            InvalidValueError: the drive is not an Ackermann drive.
+        """
+        if not isinstance(self._ramp, SteeringRamp):
+            raise InvalidValueError("steer: the robot's wheels are not steered")
+        return self._ramp.steer(speed, steering, self.now_ns)
 
     def step(self, count: int = 1) -> None:
         end = self._steps + count
@@ -194,12 +220,17 @@ class Simulator:
     def _drive(self) -> None:
         speed = self._ramp.advance(self.now_ns)
         drive = self.compiled.robot.drive
-        half = drive.wheel_separation / 2
-        for wheel, actuator in zip(
-            self.compiled.robot.wheels, self.compiled.robot.actuators, strict=True
+        robot, ctrl = self.compiled.robot, self._data.ctrl
+        rims = [rim_speed(wheel, drive, speed) for wheel in robot.wheels]
+        for wheel, actuator, rim in zip(
+            robot.wheels, robot.actuators, rims, strict=True
         ):
-            rim = speed.linear - wheel.side * speed.angular * half
-            self._data.ctrl[actuator] = wheel.direction * rim / drive.wheel_radius
+            ctrl[actuator] = wheel.direction * rim / drive.wheel_radius
+        if robot.steering is not None:
+            assert isinstance(drive, AckermannDrive)
+            ctrl[list(robot.steering)] = steering_angles(drive, speed.steering)
+        if len(robot.traction):
+            ctrl[robot.traction] = rims
 
     def _watch(self) -> None:
         """Measure clearance; decide whether contact is possible until the next."""
@@ -277,5 +308,6 @@ class Simulator:
     def wheel_odometry(self) -> WheelOdometry:
         """Dead reckoning up to now; starts at the true pose."""
         wheels = self.state.wheel_travel()
-        self._wheel_odometry.update(wheels, self.now_ns, self._wheel_rng)
+        slide = self.state.wheel_slide()
+        self._wheel_odometry.update(wheels, self.now_ns, self._wheel_rng, slide=slide)
         return self._wheel_odometry

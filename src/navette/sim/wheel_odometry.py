@@ -21,12 +21,15 @@ LEAST_STDDEV = 1e-3
 class WheelMotion:
     """Mean speed (m/s) and yaw rate (rad/s) of the axle midpoint over an interval.
 
+    ``side`` is the speed to the left of a drive that moves sideways.
+
     ``covariance``: (3, 3) of forward speed, sideways speed, yaw rate.
     """
 
     speed: float
     yaw_rate: float
     covariance: Matrix
+    side: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -67,10 +70,14 @@ class WheelOdometry:
         self._noise = noise
         self.reset(Pose2(0.0, 0.0, 0.0), (0.0, 0.0))
 
-    def reset(self, pose: Pose2, wheels: tuple[float, float]) -> None:
+    def reset(
+        self, pose: Pose2, wheels: tuple[float, float], slide: float = 0.0
+    ) -> None:
         """Start at an exact pose with the encoders at these angles (rad)."""
         self.pose = pose
         self._wheels = wheels
+        self._slide = slide
+        self._side = 0.0  # metres since the last call of motion
         self._stamp_ns = self._published_ns = 0
         self._covariance = np.zeros((3, 3))
         self._left = self._right = 0.0  # metres since the last call of motion
@@ -83,9 +90,18 @@ class WheelOdometry:
         return self._covariance + _floor()
 
     def update(
-        self, wheels: tuple[float, float], stamp_ns: int, rng: np.random.Generator
+        self,
+        wheels: tuple[float, float],
+        stamp_ns: int,
+        rng: np.random.Generator,
+        *,
+        slide: float = 0.0,
     ) -> Pose2:
-        """Integrate up to encoder angles ``wheels`` (left, right; rad)."""
+        """Integrate up to encoder angles ``wheels`` (left, right; rad).
+
+        ``slide`` is the rotation of mecanum wheels that moves the base to the left; its
+        error has the variance of the mean of both sides.
+        """
         radius = self._drive.wheel_radius
         true_left = (wheels[0] - self._wheels[0]) * radius
         true_right = (wheels[1] - self._wheels[1]) * radius
@@ -97,7 +113,12 @@ class WheelOdometry:
         spread = self._noise**2 * abs(true_left), self._noise**2 * abs(true_right)
         self._left, self._right = self._left + left, self._right + right
         self._spread = self._spread[0] + spread[0], self._spread[1] + spread[1]
-        self._move(*self._travel_and_turn(left, right), self._step_covariance(spread))
+        true_side = (slide - self._slide) * radius
+        side = self._measured(true_side, rng) if true_side else 0.0
+        self._slide = slide
+        self._side += side
+        travel, turn = self._travel_and_turn(left, right)
+        self._move(travel, turn, side, self._step_covariance(spread))
         return self.pose
 
     def motion(self) -> WheelMotion:
@@ -109,9 +130,12 @@ class WheelOdometry:
             covariance[_FORWARD_AND_YAW] += (
                 self._step_covariance(self._spread) / seconds**2
             )
-            self._motion = WheelMotion(travel / seconds, turn / seconds, covariance)
+            covariance[1, 1] += self._noise**2 * abs(self._side) / seconds**2
+            self._motion = WheelMotion(
+                travel / seconds, turn / seconds, covariance, self._side / seconds
+            )
             self._published_ns = self._stamp_ns
-            self._left = self._right = 0.0
+            self._left = self._right = self._side = 0.0
             self._spread = (0.0, 0.0)
         return self._motion
 
@@ -124,17 +148,23 @@ class WheelOdometry:
         total, skew = spread[0] + spread[1], (spread[1] - spread[0]) / (2 * base)
         return np.array([[total / 4, skew], [skew, total / base**2]])
 
-    def _move(self, travel: float, turn: float, covariance: Matrix) -> None:
+    def _move(
+        self, travel: float, turn: float, side: float, covariance: Matrix
+    ) -> None:
         # Chord of the arc: along the mean heading, shorter by sinc(turn / 2).
         half = turn / 2
-        chord = travel * (math.sin(half) / half if abs(half) > 1e-9 else 1.0)
-        step = Pose2(chord * math.cos(half), chord * math.sin(half), turn)
+        chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
+        dx, dy, cos, sin = travel * chord, side * chord, math.cos(half), math.sin(half)
+        step = Pose2(dx * cos - dy * sin, dx * sin + dy * cos, turn)
         before, self.pose = self.pose, self.pose @ step
         x, y = self.pose.x - before.x, self.pose.y - before.y
         c, s = math.cos(before.yaw + half), math.sin(before.yaw + half)
         F = _lever(x, y)
         G = np.array([[c, -y / 2], [s, x / 2], [0.0, 1.0]])
         self._covariance = F @ self._covariance @ F.T + G @ covariance @ G.T
+        if side:
+            across = np.array([-s, c, 0.0])
+            self._covariance += self._noise**2 * abs(side) * np.outer(across, across)
 
     def _measured(self, travel: float, rng: np.random.Generator) -> float:
         if self._noise == 0:

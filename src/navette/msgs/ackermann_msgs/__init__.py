@@ -1,0 +1,1 @@
+"""Interfaces of ackermann_msgs."""
