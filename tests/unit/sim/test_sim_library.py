@@ -24,7 +24,14 @@ from navette.sim import (
 
 
 def test_built_in_names() -> None:
-    assert robot_names() == ["course", "husky", "jackal", "turtlebot3_burger"]
+    assert robot_names() == [
+        "course",
+        "husky",
+        "jackal",
+        "mecanum",
+        "racecar",
+        "turtlebot3_burger",
+    ]
     assert {"arena", "course", "empty"} <= set(world_names())
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
-from navette.geometry import Footprint
+from navette.geometry import DIFFERENTIAL, DRIVES, Footprint
 from navette.navigation.grids import MovingBody
 from navette.params import Params, param
 
@@ -18,6 +18,11 @@ class BehaviorParams(Params):
         20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0
     )
 
+    drive: str = param(
+        DIFFERENTIAL,
+        "motions of the base; a spin is refused with ackermann",
+        choices=DRIVES,
+    )
     max_speed_mps: float = param(
         0.5, "limit of the requested speed", unit="m/s", above=0.0
     )

@@ -64,6 +64,8 @@ class CommandMethod(Protocol):
     ) -> Any:
         """Return the speed (m/s) and the turn rate (rad/s).
 
+        A third value is the speed to the left (m/s) of an omnidirectional drive.
+
         Args:
             state: of the robot.
             path: (N, 3) x, y, yaw (m, rad, map) from the pose nearest to the robot on.
@@ -202,11 +204,11 @@ class CommandFollower:
             self._path[self._at :].copy(),
             np.concatenate([self._obstacles, disc_outlines(self._discs)]),
         )
-        expected = "(speed, turn rate) in m/s and rad/s"
-        speed, turn_rate = checked_array(
-            self._name, returned, expected, lambda shape: shape == (2,)
-        ).tolist()
-        return VelocityCommand(speed, turn_rate)
+        expected = "(speed, turn rate[, speed to the left]) in m/s and rad/s"
+        values = checked_array(
+            self._name, returned, expected, lambda shape: shape in ((2,), (3,))
+        )
+        return VelocityCommand(*values.tolist())
 
     def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
         """Scale the command to what the obstacles allow, at worst a stop."""

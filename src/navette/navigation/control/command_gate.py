@@ -53,7 +53,7 @@ class CommandGate:
             return ControlState.COMMAND_NOT_FINITE
         params = self.params
         if (
-            abs(command.speed) > params.max_speed_mps + _ROUNDING
+            math.hypot(command.speed, command.side) > params.max_speed_mps + _ROUNDING
             or abs(command.turn_rate) > params.max_turn_rate_radps + _ROUNDING
             or abs(command.side) > params.max_side_speed_mps + _ROUNDING
             or abs(command.turn_rate) * params.min_turning_radius_m

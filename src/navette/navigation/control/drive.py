@@ -2,7 +2,7 @@
 
 import math
 
-from navette.geometry import wrap_angle
+from navette.geometry import ACKERMANN, wrap_angle
 from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.limits import STOP, VelocityCommand
 from navette.navigation.control.path_pieces import DrivePiece
@@ -80,6 +80,8 @@ class PieceDrive:
     def _turn_first(self, inputs: FollowerInputs) -> StepDecision | None:
         """Turn in place to the path while the heading error is too large to drive."""
         params = self._parts.params
+        if params.drive == ACKERMANN:
+            return None
         if self._turn is None:
             error = abs(self.at.heading_error)
             moving = abs(inputs.speed) > STANDSTILL_MPS

@@ -96,10 +96,21 @@ def advance_omni(
     turns: Array32,
     state: Array32,
 ) -> None:
-    """Accelerate towards the speeds forward and to the left and the turn rates."""
+    """Accelerate towards the speeds forward and to the left and the turn rates.
+
+    The speed in any direction is at most the one forward.
+    """
     up, down = limits.acceleration * step_s, limits.deceleration * step_s
     _ramp(speeds, state[FORWARD], -limits.max_reverse, limits.max_speed, up, down)
     _ramp(sides, state[SIDE], -limits.max_side_speed, limits.max_side_speed, up, down)
+    forward, side = state[FORWARD], state[SIDE]
+    most = limits.max_speed
+    for i in range(forward.size):
+        squared = forward[i] * forward[i] + side[i] * side[i]
+        share = most / math.sqrt(squared) if squared > most * most else np.float32(1.0)
+        forward[i] *= share
+        side[i] *= share
+        speeds[i], sides[i] = forward[i], side[i]
     _approach(turns, state[TURN_RATE], limits.max_turn_rate,
               limits.turn_acceleration * step_s)  # fmt: skip
 

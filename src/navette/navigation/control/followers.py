@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 from navette.navigation.control.command_follower import CommandFollower
 from navette.navigation.control.limits import SpeedCap
 from navette.navigation.control.methods import CONTROLLERS
+from navette.navigation.control.omni_tracking import OmniTracking
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import NONE_UNSEEN
+
+__all__ = ["Follower", "OmniTracking", "make_follower"]
 
 
 class Follower(Protocol):

@@ -56,12 +56,13 @@ def clamp(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
     """
     command = steerable(command, params)
     v, omega, side = command
+    planar = math.hypot(v, side)
     rim = abs(v) + abs(side) + abs(omega) * params.wheel_separation_m / 2
     wheel = params.max_wheel_speed_mps
     sideways = params.max_side_speed_mps
     factor = min(
         1.0,
-        params.max_speed_mps / abs(v) if v else 1.0,
+        params.max_speed_mps / planar if planar else 1.0,
         params.max_turn_rate_radps / abs(omega) if omega else 1.0,
         sideways / abs(side) if side else 1.0,
         wheel / rim if wheel and rim else 1.0,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Footprint, Pose2
+from navette.geometry import ACKERMANN, Footprint, Pose2
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.drive import PieceDrive
@@ -92,6 +92,10 @@ class PathFollower:
         if len(poses) == 0:
             return
         self._pieces = split_path(poses, self._params)
+        if self._params.drive == ACKERMANN:
+            # A bend at a corner is the best that the steering can do.
+            drives = (p for p in self._pieces if isinstance(p, DrivePiece))
+            self._pieces = list(drives)
         self._goal = (float(poses[-1, 0]), float(poses[-1, 1]))
         self._rest = None
         self._last, self._clearance = last, clearance

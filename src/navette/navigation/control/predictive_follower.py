@@ -177,9 +177,11 @@ class PredictiveFollower:
         assert self._path is not None, "a path is being followed"
         self._scale = 1.0
         self._advance(self._path, inputs.pose)
+        last = self._last or VelocityCommand(
+            inputs.speed, inputs.turn_rate, inputs.side_speed
+        )
         if self._arrived(self._path, inputs):
-            return self._stop(self._rest or ControlState.REACHED)
-        last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
+            return self._come_to_rest(last, dt)
         discs = self._near_discs(inputs.pose)
         self._choose_mode(self._evasive if len(discs) else self._calm)
         params = self._mode.params
@@ -215,6 +217,14 @@ class PredictiveFollower:
         if mode is not self._mode:
             mode.mppi.continue_from(self._mode.mppi)
             self._mode = mode
+
+    def _come_to_rest(self, last: VelocityCommand, dt: float) -> FollowerOutput:
+        """Brake at the end of the path; the path ends at rest."""
+        command = brake(clamp(last, self._params), self._params, dt)
+        if command != STOP:
+            return self._emit(command, ControlState.FOLLOWING)
+        self._rest = ControlState.REACHED
+        return self._stop(ControlState.REACHED)
 
     def _limits_at(self, pose: Pose2) -> SpeedCap:
         """Return the limits; in reverse also that of space that was never seen."""
@@ -269,12 +279,8 @@ class PredictiveFollower:
             return False
         c, s = math.cos(inputs.pose.yaw), math.sin(inputs.pose.yaw)
         # A path that ends with a turn in place ends with a heading asked for.
-        if path.direction[-1] == 0 and (
-            c * path.cos[-1] + s * path.sin[-1] < math.cos(_END_YAW_RAD)
-        ):
-            return False
-        self._rest = ControlState.REACHED
-        return True
+        turned = c * path.cos[-1] + s * path.sin[-1]
+        return bool(path.direction[-1] != 0 or turned >= math.cos(_END_YAW_RAD))
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         self._mode.mppi.reset()

@@ -34,6 +34,8 @@ Indices = NDArray[np.int32]
 METRES_PER_RADIAN = 0.5
 # Cost of a rollout that collides; earlier collisions cost more.
 COLLISION = 200.0
+# Cost of the path left on average, relative to that left at the end.
+DELAY_SHARE = 0.5
 # Samples that advance together: their arrays stay in the first-level cache.
 CHUNK = 256
 # Poses of the path that a sample may advance in one step.
@@ -212,6 +214,7 @@ def _chunk_costs(
             _clearance_costs(near[4], found, index, weights, step_s, earlier, costs)
         _nearest(path, pose, from_, at, apart)
         _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
+        _delay_costs(path, at, weights.progress, steps, costs)
     _remaining_costs(pose, path, at, weights.progress, costs)
 
 
@@ -395,6 +398,22 @@ def _path_costs(
         against = max(F(0.0), -forward[i] * direction[near])
         cost = weights.align * away + weights.heading * turned
         costs[i] += (cost + weights.reverse * against) * step_s
+
+
+@kernel(nogil=True, fastmath=True)
+def _delay_costs(
+    path: PathTable, at: Indices, weight: float, steps: int, costs: Array32
+) -> None:
+    """Add the mean cost of the path that is left: to arrive later costs more.
+
+    With the path left at the end of the rollout alone, a path shorter than the
+    horizon can be driven at its end as well as now, and at every step again later.
+    """
+    measure = path.poses[4]
+    end = measure[-1]
+    share = np.float32(DELAY_SHARE / steps) * weight
+    for i in range(at.size):
+        costs[i] += share * (end - measure[np.uint32(at[i])])
 
 
 @kernel(nogil=True, fastmath=True)

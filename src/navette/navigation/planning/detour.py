@@ -67,16 +67,24 @@ class DetourPlanner:
         self.grid, self.body, self.params, self.router = grid, body, params, router
         self._unseen = unseen
         step = min(0.3, max(0.2 * body.circumscribed_m, 2 * grid.spec.resolution))
+        # The sharpest bends turn by two heading steps.
+        step = max(step, 2 * params.min_turning_radius_m * math.tau / Motions.headings)
         self.motions = Motions(
             step_m=step,
             reach_m=body.circumscribed_m,
             sample_m=min(params.path_spacing_m, step / 2),
             turn_cost_m_per_rad=params.turn_cost_m_per_rad,
             reverse_factor=params.reverse_factor,
+            drive=params.drive,
         )
 
     def plan(self, start: Pose2, target: Target, route: Poses | None) -> DetourResult:
         """Plan poses for the body; ``route`` is the grid's, which does not fit."""
+        if not self.params.turns_in_place:
+            # The grid's route has corners that the steering cannot follow.
+            found = self._search(np.empty((0, 3)), start, target)
+            poses = found.poses if len(found.poses) else None
+            return DetourResult(poses, found.expansions, found.exhausted)
         before = self._usable_beginning(route)
         found = self._search(before, start, target)
         effort = found.expansions

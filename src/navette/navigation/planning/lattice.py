@@ -39,11 +39,8 @@ from navette.navigation.planning.lattice_kernels import (
     Tree,
     grow,
 )
-from navette.navigation.planning.lattice_motions import MOVES, Motions
+from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.traversal import STRAIGHT
-
-_DIRECTIONS = np.array([direction for direction, _ in MOVES], np.int8)
-_TURNS = np.array([turn for _, turn in MOVES], np.int64)
 
 
 @dataclass(frozen=True)
@@ -166,8 +163,8 @@ def _move_table(motions: Motions, per_metre: float) -> MoveTable:
         motions.sample_counts,
         motions.costs_m * per_metre,
         motions.cusp_cost_m * per_metre,
-        _DIRECTIONS,
-        _TURNS,
+        motions.directions,
+        motions.turns,
         motions.headings,
     )
 
@@ -177,7 +174,7 @@ def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
     bin_cells = max(1.0, motions.step_m / 2 / spec.resolution)
     bins_wide = int(spec.width / bin_cells) + 1
     bins_high = int(spec.height / bin_cells) + 1
-    room = 8 * max_expansions + 1
+    room = len(motions.moves) * max_expansions + 1
     return Tree(
         np.empty((room, 2), np.float64),
         np.empty((room, 5), np.int32),

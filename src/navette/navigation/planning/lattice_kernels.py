@@ -133,7 +133,7 @@ def grow(
             total = tree.links[node, G] + _arrival(scene, goal, x, y, yaw)
             if total < best:
                 best, best_node = total, node
-        pool = reserve(pool, queue, 8)
+        pool = reserve(pool, queue, moves.counts.shape[0])
         used, bucket = _branch(
             scene, moves, tree, node, yaw, escape_m, used, pool, bucket
         )
@@ -175,7 +175,7 @@ def _branch(
     cos, sin = math.cos(yaw), math.sin(yaw)
     escaping = tree.links[node, ESCAPING] != 0
     needed = escape_m if escaping else scene.margin_m
-    for m in range(8):
+    for m in range(moves.counts.shape[0]):
         end = moves.counts[m] - 1
         dx, dy = moves.offsets[m, end, 0], moves.offsets[m, end, 1]
         dyaw = moves.offsets[m, end, 2]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
-from navette.geometry import Footprint
+from navette.geometry import ACKERMANN, DIFFERENTIAL, DRIVES, Footprint
 from navette.navigation.planning.methods import PLANNERS
 from navette.params import Params, param
 
@@ -18,6 +18,15 @@ class PlannerParams(Params):
         "a_star", "search on the grid, or a planner of your own", choices=PLANNERS
     )
 
+    drive: str = param(
+        DIFFERENTIAL,
+        "motions of the base: turns in place, bends of a least radius (ackermann), or "
+        "sideways, too (omni)",
+        choices=DRIVES,
+    )
+    min_turning_radius_m: float = param(
+        0.0, "ackermann: least radius of a bend", unit="m", at_least=0.0
+    )
     footprint_m: tuple[float, ...] = param(
         (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
         "corners x1, y1, x2, y2, … of the body in the base frame",
@@ -141,7 +150,17 @@ class PlannerParams(Params):
         below=1.0,
     )
 
+    @property
+    def turns_in_place(self) -> bool:
+        """Whether the base can turn in place."""
+        return self.drive != ACKERMANN
+
     def check(self) -> None:
+        if self.turns_in_place != (self.min_turning_radius_m == 0):
+            raise ParameterError(
+                f"min_turning_radius_m {self.min_turning_radius_m:g}: must be > 0 with "
+                f"drive {ACKERMANN!r} and 0 with others; drive is {self.drive!r}"
+            )
         try:
             Footprint.from_flat(self.footprint_m)
         except InvalidValueError as error:

@@ -17,7 +17,12 @@ from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.path_shape import Poses, path_cost, turn_in_place
+from navette.navigation.planning.path_shape import (
+    Poses,
+    lengths,
+    path_cost,
+    turn_in_place,
+)
 from navette.navigation.planning.planning_grid import (
     NO_HITS,
     BodyShape,
@@ -40,6 +45,8 @@ _LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
 _EXACT_START_RAD = 0.1
 # Clearance at the path's end in margins: a robot stops slightly early or late.
 _ROOMY_END = 2.0
+# Least difference between the length of a bend and the turn times the least radius.
+_STEERABLE_M = 0.02
 
 
 @dataclass(frozen=True)
@@ -317,6 +324,8 @@ class Planner:
         self, grid: PlanningGrid, start: Pose2, goal: Goal, route: Poses
     ) -> Poses | None:
         """Return the route, shortened slightly if needed, if the body fits along it."""
+        if not self.params.turns_in_place and not self._is_steerable(start, route):
+            return None
         sweep = turn_in_place(start.x, start.y, start.yaw, float(route[0, 2]))
         check = check_path(np.concatenate([sweep, route]), grid, self.body)
         if check.first_bad is None:
@@ -328,6 +337,14 @@ class Planner:
         if missing > _CUT_SHARE * self.params.goal_tolerance_m:
             return None
         return self._cut_for_comfort(grid, goal, kept)
+
+    def _is_steerable(self, start: Pose2, route: Poses) -> bool:
+        """Return whether an Ackermann drive can follow the route from the start."""
+        yaws = np.concatenate([[start.yaw], route[:, 2]])
+        turned = np.abs(np.remainder(np.diff(yaws) + np.pi, 2 * np.pi) - np.pi)
+        driven = np.concatenate([[0.0], lengths(route)])
+        radius = self.params.min_turning_radius_m
+        return bool(np.all(turned * radius <= driven + _STEERABLE_M))
 
     def _cut_for_comfort(self, grid: PlanningGrid, goal: Goal, route: Poses) -> Poses:
         """Shorten the route to an end with more clearance, if that is near enough."""

@@ -23,7 +23,7 @@ from navette.navigation.planning.lattice import (
     LatticeWorld,
     search,
 )
-from navette.navigation.planning.lattice_motions import MOVES, Motions
+from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import directions, lengths, turns
 from navette.navigation.planning.planning_grid import BodyShape, open_at, planning_grid
@@ -148,7 +148,7 @@ def test_start_outside_is_refused() -> None:
 
 def test_arcs_end_on_their_circle() -> None:
     radius = MOTIONS.step_m / MOTIONS.heading_step
-    for m, (direction, turn) in enumerate(MOVES):
+    for m, (direction, _, turn) in enumerate(MOTIONS.moves):
         end = MOTIONS.offsets[m, MOTIONS.sample_counts[m] - 1]
         assert end[2] == pytest.approx(turn * MOTIONS.heading_step)
         if direction and turn:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from navette.geometry import ACKERMANN
 from navette.msgs import topics
 from navette.msgs.nav2_msgs.action import (
     AssistedTeleop,
@@ -45,6 +46,8 @@ def _spin(
 ) -> Behavior | BehaviorEnd:
     if not math.isfinite(goal.target_yaw):
         return BehaviorEnd("UNKNOWN", f"target_yaw {goal.target_yaw}: must be finite")
+    if params.drive == ACKERMANN:
+        return BehaviorEnd("UNKNOWN", "an Ackermann drive cannot turn in place")
     motion = TurnBy(goal.target_yaw, params)
     return MotionBehavior(motion, params, collision, _allowance_s(goal))
 
