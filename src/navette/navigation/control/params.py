@@ -177,8 +177,9 @@ class ControlParams(Params):
         6.0, "mppi: cost of low clearance", at_least=0.0
     )
     mppi_clearance_m: float = param(
-        0.25, "mppi: clearance below which it costs", unit="m", above=0.0, at_most=10.0
-    )
+        0.25, "mppi: clearance below which it costs", unit="m", at_least=0.01,
+        at_most=10.0,
+    )  # fmt: skip
     mppi_reverse_weight: float = param(
         5.0, "mppi: cost of driving against the path's direction", at_least=0.0
     )

@@ -117,7 +117,8 @@ class StallMonitor:
     def _append(self, step: _Step) -> None:
         self._steps.append(step)
         self._span_s += step.dt
-        while self._span_s - self._steps[0].dt >= self._time_s - 1e-9:
+        longest_s = max(self._time_s - 1e-9, 0.5 * step.dt)  # holds one step at least
+        while self._span_s - self._steps[0].dt >= longest_s:
             self._span_s -= self._steps.popleft().dt
 
     def _stands(self) -> bool:

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 # Largest part into which a cell at the border of the start area is divided.
 _PART_M = 0.02
+# No robot backs into space that it cannot see faster than it stops in this distance.
+_FARTHEST_M = 10.0
 
 
 class Layer(NamedTuple):
@@ -63,7 +65,7 @@ def unseen_points(
         layers: one or two; the cells are those of the first, continued outside it.
         start: area that counts as seen.
         around: centre of the region (map).
-        reach_m: radius of the region.
+        reach_m: radius of the region, at most 10 m of which are searched.
     """
     first, last = layers[0], layers[-1]
     return _unseen(
@@ -76,7 +78,7 @@ def unseen_points(
         start.outline.radius_m + start.seam_m,
         start.seam_m,
         np.array((around.x, around.y)),
-        reach_m,
+        min(reach_m, _FARTHEST_M),
     )
 
 
