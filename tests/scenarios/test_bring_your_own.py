@@ -11,6 +11,8 @@ from navette.errors import NavetteError
 from navette.msgs.rcl_interfaces.msg import Log
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
+from navette.ros2.launch import show_arguments
+from navette.ros2.launch.session import find_launch_file
 from navette.ros2.names.node_classes import node_makers
 
 PAGE = Path(__file__).parents[2] / "docs/howto/bring-your-own.md"
@@ -212,6 +214,14 @@ def test_a_fault_is_logged_once_and_the_robot_stops(
     (logged,) = [each for each in texts if re.search(match, each)]
     assert "mine.py" in logged
     assert abs(simulation.sim.simulator.motion().linear[0]) < 0.05
+
+
+def test_the_launch_file_takes_methods_as_arguments() -> None:
+    path, words = find_launch_file(["navette", "sim.launch.xml", "planner:=mine.py"])
+    assert words == ["planner:=mine.py"]
+    arguments = show_arguments(path)
+    for name in ("planner", "controller", "costmap", "mapping", "robot", "world"):
+        assert f"'{name}':" in arguments
 
 
 @pytest.mark.slow

@@ -13,6 +13,8 @@ from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile, stamp_to_ns
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+# Clearance below which a controller that names no reason drives slower because of it.
+_NEAR_M = 0.3
 # Distance from the start at which the time of a trial begins.
 _MOVED_M = 0.1
 
@@ -74,6 +76,9 @@ class TrialObserver(Node):
         values = {pair.key: pair.value for pair in msg.values}
         self._state = msg.message
         self._limit = values.get("limited_by", "")
+        near = float(values.get("clearance_m") or math.inf) < _NEAR_M
+        if not self._limit and near:
+            self._limit = "clearance"
 
     def _on_truth(self, msg: Odometry) -> None:
         at, twist = msg.pose.pose.position, msg.twist.twist

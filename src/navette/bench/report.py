@@ -201,8 +201,7 @@ def _table(results: Sequence[TrialResult]) -> str:
 
 
 def _ratio(result: TrialResult) -> str:
-    ratio = result.path_m / result.shortest_m
-    return f"{ratio:.2f}" if math.isfinite(ratio) else "–"
+    return _known(result.path_ratio, 2)
 
 
 def _metres(value: float | None) -> str:

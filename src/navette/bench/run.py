@@ -109,6 +109,7 @@ def _measure(
         wall_s=wall_s,
         track=np.round(samples[::5, 1:3], 2).tolist(),
         sim_s=summary.sim_time_s,
+        reach_m=trial.reach_m,
         variant=trial.variant,
     )
 

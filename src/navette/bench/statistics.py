@@ -87,9 +87,7 @@ def summarize(results: Sequence[TrialResult]) -> Summary:
         contacts=sum(each.contacts for each in results),
         score=fmean(each.score for each in results),
         time_s=fmean(each.time_s for each in reached) if reached else math.nan,
-        path_ratio=fmean(each.path_m / each.shortest_m for each in reached)
-        if reached
-        else math.nan,
+        path_ratio=fmean(each.path_ratio for each in reached) if reached else math.nan,
         min_clearance_m=min(clearances, default=math.nan),
         jerk=fmean(each.jerk for each in results),
         outcomes=dict(sorted(outcomes.items())),

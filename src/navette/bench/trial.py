@@ -69,6 +69,7 @@ class TrialResult:
         track: every tenth of a second x, y (m, map), for the pictures.
         cpu_s: node → CPU seconds of its callbacks.
         sim_s: simulated seconds of the trial.
+        reach_m: distance from the goal at which the trial ended.
         variant: of the trial.
     """
 
@@ -88,7 +89,13 @@ class TrialResult:
     track: list[list[float]] = field(default_factory=list)
     cpu_s: dict[str, float] = field(default_factory=dict)
     sim_s: float = math.nan
+    reach_m: float = 0.0
     variant: str = ""
+
+    @property
+    def path_ratio(self) -> float:
+        """The driven path to the shortest one that ends the trial."""
+        return self.path_m / (self.shortest_m - self.reach_m)
 
     @property
     def succeeded(self) -> bool:

@@ -26,7 +26,8 @@ from navette.navigation.control.records import (
     FollowerInputs,
     FollowerOutput,
 )
-from navette.navigation.control.states import ControlState
+from navette.navigation.control.speed_profile import approach_speed
+from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import NO_DISCS, NONE_UNSEEN, disc_outlines
 from navette.plugins import checked_array, own_call
 
@@ -107,6 +108,7 @@ class CommandFollower:
         self._last: VelocityCommand | None = None
         self._cross_track = self._heading_error = 0.0
         self._clearance, self._scale = math.inf, 1.0
+        self._limited_by = LimitedBy.NONE
 
     @property
     def has_path(self) -> bool:
@@ -193,7 +195,21 @@ class CommandFollower:
         if abs(self._cross_track) > self._params.max_deviation_m:
             return self._emit(brake(last, self._params, dt), ControlState.OFF_PATH)
         wanted = self._cap.applied_to(self._wanted(inputs, dt))
-        return self._keep_clear(inputs.pose, approach(last, wanted, self._params, dt))
+        stopping = self._stopping(inputs).applied_to(wanted)
+        command = approach(last, stopping, self._params, dt)
+        if stopping != wanted:
+            self._limited_by = LimitedBy.PATH_END
+        elif command != wanted:
+            self._limited_by = LimitedBy.ACCELERATION
+        else:
+            self._limited_by = LimitedBy.NONE
+        return self._keep_clear(inputs.pose, command)
+
+    def _stopping(self, inputs: FollowerInputs) -> SpeedCap:
+        """Return the limits from which the robot can stop at the end of the path."""
+        left = max(self._left_m, self._end_m(inputs.pose))
+        limit = approach_speed(left, inputs.speed, self._params)
+        return SpeedCap(limit, limit)
 
     def _wanted(self, inputs: FollowerInputs, dt: float) -> VelocityCommand:
         state = DriveState(*inputs.pose, inputs.speed, inputs.turn_rate, dt)
@@ -221,6 +237,8 @@ class CommandFollower:
         motion = command.speed, command.turn_rate
         yielding = safe_share(pose, motion, self._discs, self._body_m, margin_m)
         self._scale = scale = min(1.0, scale, yielding)
+        if scale < 1.0:
+            self._limited_by = LimitedBy.COLLISION_CHECK
         return self._emit(command.scaled(scale), ControlState.FOLLOWING)
 
     def _advance(self, pose: Pose2) -> None:
@@ -237,10 +255,17 @@ class CommandFollower:
 
     def _ends(self, inputs: FollowerInputs) -> bool:
         """Return whether the robot is at the end of the path."""
-        off = math.dist(self._path[-1, :2], (inputs.pose.x, inputs.pose.y))
-        left = self._measure[-1] - self._measure[self._at]
         tolerance = self._params.goal_tolerance_m
-        return bool(off <= tolerance and left <= tolerance)
+        return self._end_m(inputs.pose) <= tolerance and self._left_m <= tolerance
+
+    def _end_m(self, pose: Pose2) -> float:
+        """Return the distance to the end of the path."""
+        return math.dist(self._path[-1, :2], (pose.x, pose.y))
+
+    @property
+    def _left_m(self) -> float:
+        """Length of the path that is left."""
+        return float(self._measure[-1] - self._measure[self._at])
 
     def _restart(self) -> None:
         """Let the method forget what it has accumulated, if it can."""
@@ -254,9 +279,7 @@ class CommandFollower:
         if refusal is not None:
             command, state = STOP, refusal
         self._last = command if self._rest is None else None
-        left = 0.0
-        if self._rest is None:
-            left = float(self._measure[-1] - self._measure[self._at])
+        left = self._left_m if self._rest is None else 0.0
         return FollowerOutput(
             command,
             state,
@@ -265,4 +288,5 @@ class CommandFollower:
             left,
             self._clearance,
             self._scale,
+            self._limited_by,
         )

@@ -40,7 +40,7 @@ def points_to_message(
 
 
 def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
-    """Return the points (N, 2) x, y of a cloud; those that are not finite are left out.
+    """Return the finite points (N, 2) x, y of a cloud.
 
     Raises:
         InvalidValueError: no x and y of type float32, or data of another size.

@@ -58,7 +58,7 @@ def merge(
             overwritten by a lower value: at a distance, neighbouring beams pass a
             post on both sides and mark its cell free without having seen it.
         lethal_cells: (M, 2) row, column of the target's cells that contain the points
-            where the beams ended. None = those that contain the centres of the
+            where the beams ended. None = the cells that contain the centres of the
             source's lethal cells.
 
     Raises:
