@@ -194,7 +194,7 @@ def _body(sizes: RobotSizes, gap: float, mass: float) -> Link:
         )
     ]
     ball = 0.5 * gap
-    for name, x in (("front", length / 2 - ball), ("rear", ball - length / 2)):
+    for name, x in (("front", length / 2 - 2 * ball), ("rear", 2 * ball - length / 2)):
         if abs(x - sizes.axle_x_m) > length / 4:
             at = Transform3((x, 0.0, ball), _LEVEL)
             geometries.append(
