@@ -51,6 +51,9 @@ _MANOEUVRES = tuple(
     for v in (1.0, 0.6, 0.3, 0.0, -1.0)
     for w in (-1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0)
 )
+# Swerves: shares of the speed and of the turn rate, and how long each turn lasts.
+_SWERVE_SPEEDS, _SWERVE_TURNS = (1.0, 0.6), (-1.0, -0.5, 0.5, 1.0)
+_SWERVE_S = (0.4, 0.8)
 _SIDEWAYS = tuple(
     (v, side) for v in (-0.5, 0.0, 0.5) for side in (-1.0, -0.4, 0.4, 1.0)
 )
@@ -70,8 +73,18 @@ class MotionState(NamedTuple):
 class Mppi:
     """The optimiser; keeps the command sequence between steps."""
 
-    def __init__(self, params: ControlParams, body: Array, seed: int = 0) -> None:
-        """Args: params; body (P, 3) x, y, disc radius (base frame, m); noise seed."""
+    def __init__(
+        self,
+        params: ControlParams,
+        body: Array,
+        seed: int = 0,
+        *,
+        swerves: bool = False,
+    ) -> None:
+        """Args: params; body (P, 3) x, y, disc radius (base frame, m); noise seed.
+
+        ``swerves``: also try to turn off and back again, past what comes.
+        """
         self._params = params
         self._drive = DRIVES.index(params.drive)
         self._limits = _limits(params)
@@ -81,9 +94,11 @@ class Mppi:
         self._body = RolloutBody.of(body)
         steps, samples = params.mppi_steps, params.mppi_samples
         self._noise = self._draw(samples, steps, np.random.default_rng(seed))
-        self._fixed = self._manoeuvres()
+        self._fixed = np.repeat(self._manoeuvres()[None], steps, axis=0)
+        if swerves:
+            self._fixed = np.concatenate([self._fixed, self._swerves(steps)], axis=2)
         self._commands = np.zeros((steps, len(self._most)), np.float32)
-        count = samples + self._fixed.shape[1]
+        count = samples + self._fixed.shape[2]
         self._candidates = np.empty((steps, len(self._most), count), np.float32)
         self._costs = np.empty(count, np.float32)
         self._turn = 0
@@ -223,6 +238,18 @@ class Mppi:
             (v * forward, side * limits.max_side_speed, 0.0) for v, side in _SIDEWAYS
         ]
         return np.array(rolling + sliding).T
+
+    def _swerves(self, steps: int) -> Array:
+        """Return the commands (T, D, F) of turns off the path and back."""
+        parts = [(speed, turn, time) for speed in _SWERVE_SPEEDS
+                 for turn in _SWERVE_TURNS for time in _SWERVE_S]  # fmt: skip
+        commands = np.zeros((steps, len(self._most), len(parts)))
+        for i, (speed, turn, time_s) in enumerate(parts):
+            count = max(1, round(time_s / self._step_s))
+            commands[:, 0, i] = speed * self._limits.max_speed
+            commands[:count, -1, i] = turn * self._most[-1]
+            commands[count : 2 * count, -1, i] = -turn * self._most[-1]
+        return commands
 
 
 def _relative(discs: Array, state: MotionState) -> Array32:

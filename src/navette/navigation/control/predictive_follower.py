@@ -62,8 +62,11 @@ class _Mode(NamedTuple):
     mppi: Mppi
 
     @classmethod
-    def of(cls, params: ControlParams, body: NDArray[np.float64]) -> "_Mode":
-        return cls(params, CommandGate(params), Mppi(params, body))
+    def of(
+        cls, params: ControlParams, body: NDArray[np.float64], *, swerves: bool
+    ) -> "_Mode":
+        mppi = Mppi(params, body, swerves=swerves)
+        return cls(params, CommandGate(params), mppi)
 
 
 @CONTROLLERS.register("mppi")
@@ -77,10 +80,8 @@ class PredictiveFollower:
         self._collision = collision_check(params)
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
-        self._calm = _Mode.of(params, self._body)
-        self._evasive = self._calm
-        if params.evasion_factor > 1.0:
-            self._evasive = _Mode.of(evasive(params), self._body)
+        self._calm = _Mode.of(params, self._body, swerves=False)
+        self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
         self._field = _open_field()
         self._speed_limits = NO_CAP

@@ -22,6 +22,7 @@ from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
+from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.msgs.std_msgs.msg import Empty, Header
@@ -30,7 +31,14 @@ from navette.msgs.std_srvs.srv import (
     Trigger_Request,
     Trigger_Response,
 )
-from navette.navigation.grids import GridSpec, HitPoints, grid_from_message
+from navette.navigation.grids import (
+    NO_DISCS,
+    GridSpec,
+    HitPoints,
+    MovingDiscs,
+    discs_from_message,
+    grid_from_message,
+)
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
@@ -58,6 +66,8 @@ _STATUS_DELAY_NS = 200_000_000
 _BLOCKED = "blocked"
 # Status of a controller whose robot does not move as commanded.
 _STALLED = "stalled"
+# Age of the moving obstacles from which they are obsolete.
+_MOVING_TIMEOUT_S = 0.5
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY,)
 
@@ -76,6 +86,11 @@ class PlannerNode(StageNode):
             topics.MAP_POINTS,
             "where beams ended, within the lethal cells of the map with the same stamp",
             callback="on_map_points",
+        ),
+        Input.of(
+            topics.TRACKED_OBSTACLES,
+            "moving obstacles; paths avoid where they will be",
+            callback="on_moving",
         ),
         Input.of(
             topics.ODOMETRY,
@@ -142,6 +157,7 @@ class PlannerNode(StageNode):
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._moving = MovingDiscs(NO_DISCS, 0)
         self._map_ns = 0
         self._hits = HitPoints()
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
@@ -182,6 +198,10 @@ class PlannerNode(StageNode):
         elif msg.message == _BLOCKED and self._navigator.has_path:
             self._when_stepped(lambda: self._navigator.note_blocked())
             self.on_timer()
+
+    def on_moving(self, msg: ObstacleArray) -> None:
+        """Store the moving obstacles for the next step."""
+        self._moving = discs_from_message(msg, self.params.map_frame)
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map; a path that it blocks is replaced at once."""
@@ -315,6 +335,8 @@ class PlannerNode(StageNode):
         if self._stepping is not None:
             self._step_is_due = True
             return
+        moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
+        self._navigator.planner.set_moving(moving)
         self._stepping = stepping = self._navigator.copy()
         robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
         self._worker.run(

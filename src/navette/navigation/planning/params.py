@@ -72,6 +72,13 @@ class PlannerParams(Params):
         at_most=50.0,
     )
 
+    moving_horizon_s: float = param(
+        2.0,
+        "paths avoid where moving obstacles will be within this time; 0: nowhere",
+        unit="s",
+        at_least=0.0,
+        at_most=10.0,
+    )
     goal_tolerance_m: float = param(
         0.5, "distance that counts as reached; a goal may be moved by it", unit="m",
         above=0.0,

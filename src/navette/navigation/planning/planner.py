@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec, Layer, StartArea, unseen_mask
+from navette.navigation.grids import NO_DISCS, GridSpec, Layer, StartArea, unseen_mask
 from navette.navigation.planning.close_look import close_map
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
 from navette.navigation.planning.goals import nearest_reachable
 from navette.navigation.planning.methods import PLANNERS
+from navette.navigation.planning.moving_cost import with_moving
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
@@ -82,6 +83,8 @@ class Planner:
         self._hits = NO_HITS
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
+        self._moving = NO_DISCS
+        self._moved: dict[float, PlanningGrid] = {}  # grids with what moves
         #: Pose where the robot was put down; None: that of the start of each plan.
         self.put_down_at: Pose2 | None = None
 
@@ -89,6 +92,7 @@ class Planner:
         """Return a planner with the same map that changes independently."""
         other = copy.copy(self)
         other._grids = self._grids.copy()
+        other._moved = self._moved.copy()
         return other
 
     def with_params(self, params: PlannerParams) -> "Planner":
@@ -114,6 +118,13 @@ class Planner:
         self._map = occupancy, spec
         self._hits = hits
         self._grids.clear()
+        self._moved.clear()
+
+    def set_moving(self, discs: NDArray[np.float64]) -> None:
+        """Replace the moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
+        if len(discs) or len(self._moving):
+            self._moving = discs
+            self._moved.clear()
 
     def warm_up(self) -> None:
         """Compile or load every kernel before the first goal."""
@@ -145,7 +156,16 @@ class Planner:
             self._grids[margin] = planning_grid(
                 *self._map, self.body, params, self._hits
             )
-        return self._grids[margin]
+        if not len(self._moving):
+            return self._grids[margin]
+        if margin not in self._moved:
+            self._moved[margin] = with_moving(
+                self._grids[margin],
+                self._moving,
+                self.params.moving_horizon_s,
+                self.body.inscribed_m,
+            )
+        return self._moved[margin]
 
     def plan(self, start: Pose2, goal: Goal, *, exact_start: bool = False) -> Plan:
         """Plan from ``start`` to ``goal``; without a path the outcome names the reason.
