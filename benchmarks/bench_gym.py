@@ -30,8 +30,7 @@ highway: Any = optional("highway_env")
 ID = "navette/Navigation-v0"
 BEAMS = 720
 STEPS = 20
-VECTOR = 2
-VECTOR_STEPS = 300
+RUNS = 30
 
 
 def scene() -> Scene:
@@ -41,9 +40,11 @@ def scene() -> Scene:
     return world.scene()
 
 
-def navette_env(world: Any = None, **sim: float) -> gymnasium.Env[Any, Any]:
+def navette_env(
+    world: Any = None, robot: str = "jackal", **sim: float
+) -> gymnasium.Env[Any, Any]:
     return gymnasium.make(
-        ID, world=world or scene(), robot="jackal", parameters={"sim": sim}
+        ID, world=world or scene(), robot=robot, parameters={"sim": sim}
     )
 
 
@@ -97,25 +98,18 @@ def others() -> dict[str, Callable[[], None]]:
     return found
 
 
-def vector_figure(mode: str) -> Callable[[], Figure]:
+def rate(name: str, env: gymnasium.Env[Any, Any]) -> Callable[[], Figure]:
+    """Measure steps per second of CPU time, which other programs do not slow much."""
+
     def measure() -> Figure:
-        many = gymnasium.make_vec(
-            ID, VECTOR, vectorization_mode=mode, world=scene(), robot="jackal"
-        )
-        many.reset(seed=0)
-        many.action_space.seed(0)
-        many.step(0.3 * many.action_space.sample())
-        begin = time.perf_counter()
-        for _ in range(VECTOR_STEPS):
-            many.step(0.3 * many.action_space.sample())
-        elapsed_s = time.perf_counter() - begin
-        many.close()
-        return Figure(
-            f"steps per second, {mode} vector of {VECTOR}",
-            VECTOR * VECTOR_STEPS / elapsed_s,
-            "/s",
-            more_is_better=True,
-        )
+        run = stepping(env)
+        run()
+        begin = time.process_time()
+        for _ in range(RUNS):
+            run()
+        elapsed_s = time.process_time() - begin
+        per_s = round(RUNS * STEPS / elapsed_s)
+        return Figure(f"steps per second of CPU, {name}", per_s, "/s")
 
     return measure
 
@@ -131,8 +125,9 @@ def main() -> None:
     bench.case(f"100 posts, {BEAMS} beams", contenders, per_run=STEPS)
     own = {"navette": stepping(navette_env("rooms:3")), **others()}
     bench.case("each in its own world", own, per_run=STEPS)
-    bench.figure(vector_figure("sync"))
-    bench.figure(vector_figure("async"))
+    bench.figure(rate("Jackal among posts", navette_env()))
+    bench.figure(rate("Jackal, 5 ms physics", navette_env(timestep_s=0.005)))
+    bench.figure(rate("Burger in rooms", navette_env("rooms:3", "turtlebot3_burger")))
     bench.main()
 
 
