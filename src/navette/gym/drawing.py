@@ -15,6 +15,7 @@ EDGE_PX = 600
 """Longer edge of the picture."""
 
 _FLOOR, _OBSTACLE = (246, 246, 242), (74, 84, 96)
+_ACTOR = (150, 90, 160)
 _BEAMS, _TRACK = (250, 206, 140), (46, 120, 190)
 _GOAL, _ROBOT = (40, 160, 80), (200, 70, 50)
 
@@ -26,7 +27,7 @@ def draw_episode(
     beams: NDArray[np.float64],
     tolerance_m: float,
 ) -> NDArray[np.uint8]:
-    """Return (H, W, 3): obstacles, beams, driven track, goal and robot.
+    """Return (H, W, 3): obstacles, actors, beams, driven track, goal and robot.
 
     Args:
         world: with the robot.
@@ -48,6 +49,8 @@ def draw_episode(
         x, y = (np.asarray(points) - spec.origin[:2]).T * scale / spec.resolution
         return list(zip(x.tolist(), (size[1] - y).tolist(), strict=True))
 
+    for actor in world.simulator.outlines(actors=True):
+        draw.polygon(pixels(actor), fill=_ACTOR)
     at = track[-1]
     centre = pixels([at[:2]])[0]
     for end in pixels(beams):

@@ -39,12 +39,12 @@ def choose_ends(
     """
     for _ in range(1 if start or goal else _ATTEMPTS):
         if goal is None:
-            at = start or _draw(world, _free(world), rng)
+            at = start or _draw(world, _free(world, at_start=True), rng)
             found = _reachable(world, at, length_m)
             if found.any():
                 return Ends(at, _route(world, _draw(world, found, rng)))
         elif start is None:
-            found = _reachable(world, goal, length_m)
+            found = _reachable(world, goal, length_m) & _free(world, at_start=True)
             if found.any():
                 return Ends(_draw(world, found, rng), _route(world, goal))
         else:
@@ -62,10 +62,10 @@ def _route(world: EpisodeWorld, goal: Point) -> Route:
     return Route(world.space, goal, world.footprint.inscribed_radius + _PATH_ROOM_M)
 
 
-def _free(world: EpisodeWorld) -> NDArray[np.bool_]:
+def _free(world: EpisodeWorld, *, at_start: bool = False) -> NDArray[np.bool_]:
     """Cells (H, W) at which the robot stands clear with any heading."""
     around_m = world.footprint.circumscribed_radius + _ROOM_M
-    room = world.space.room_m
+    room = world.space.start_room_m if at_start else world.space.room_m
     return np.asarray(room >= min(around_m, room.max()))
 
 

@@ -28,15 +28,20 @@ class FreeSpace:
     Args:
         outlines: convex polygons (N, 2), m.
         include: points that the grid covers, beside the obstacles.
+        actors: outlines of actors when an episode begins.
 
     Attributes:
         spec: the grid.
         occupied: (H, W) uint8, 255 = obstacle.
         room_m: (H, W) distance to the nearest obstacle, at most 2 m.
+        start_room_m: the same with the actors.
     """
 
     def __init__(
-        self, outlines: Sequence[NDArray[np.float64]], include: Sequence[Point]
+        self,
+        outlines: Sequence[NDArray[np.float64]],
+        include: Sequence[Point],
+        actors: Sequence[NDArray[np.float64]] = (),
     ) -> None:
         corners = np.concatenate([np.array(include).reshape(-1, 2), *outlines])
         rim = _RIM_M if outlines else _NO_OBSTACLE_M
@@ -44,13 +49,19 @@ class FreeSpace:
         cell = max(_CELL_M, float((high - low).max()) / _LARGEST)
         width, height = np.ceil((high - low) / cell).astype(int).tolist()
         self.spec = GridSpec(cell, width, height, Pose2(low[0], low[1], 0.0))
-        image = Image.new("L", (width, height))
+        self.occupied = self._cells(outlines)
+        self.room_m = distance_field(self.occupied, cell, _RIM_M)
+        together = self.occupied | self._cells(actors)
+        self.start_room_m = distance_field(together, cell, _RIM_M)
+
+    def _cells(self, outlines: Sequence[NDArray[np.float64]]) -> NDArray[np.uint8]:
+        """Return the cells (H, W) within convex outlines, as 255."""
+        image = Image.new("L", (self.spec.width, self.spec.height))
         draw = ImageDraw.Draw(image)
         for outline in outlines:
-            pixels = (outline - low) / cell - 0.5
+            pixels = (outline - self.spec.origin[:2]) / self.spec.resolution - 0.5
             draw.polygon([*map(tuple, pixels.tolist())], fill=LETHAL, outline=LETHAL)
-        self.occupied = np.array(image)
-        self.room_m = distance_field(self.occupied, cell, _RIM_M)
+        return np.array(image)
 
 
 class Route:

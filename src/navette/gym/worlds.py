@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from navette.bench import dynabarn, moving_worlds
 from navette.bench.generators import GENERATORS, generate
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
@@ -18,6 +19,9 @@ from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene, SimParams, Simulator
 
 NodeParameters = Mapping[str, Mapping[str, Any]]
+
+KINDS = (*GENERATORS, moving_worlds.KIND)
+"""Kinds of generated worlds."""
 
 _FAR_AWAY = Pose2(1e4, 1e4, 0.0)
 
@@ -41,7 +45,9 @@ class EpisodeWorld:
     def space(self) -> FreeSpace:
         robot = self.simulator.compiled.robot.model.world_T_model.to_pose2()
         ends = [end[:2] for end in (robot, self.start, self.goal) if end is not None]
-        return FreeSpace(self.simulator.outlines(), ends)
+        # First needed before the first step: actors are where their scripts begin.
+        actors = self.simulator.outlines(actors=True)
+        return FreeSpace(self.simulator.outlines(), ends, actors)
 
 
 class WorldSource:
@@ -71,7 +77,7 @@ class WorldSource:
         self._worlds: dict[int, EpisodeWorld] = {}
         self._scene = world if isinstance(world, Scene) else None
         self._kind, _, seed = str(world).partition(":")
-        self.is_generated = self._scene is None and self._kind in GENERATORS
+        self.is_generated = self._scene is None and self._kind in KINDS
         self._seed = int(seed) if self.is_generated and seed.isdigit() else None
         if self.is_generated and seed and self._seed is None:
             raise InvalidValueError(
@@ -92,7 +98,7 @@ class WorldSource:
             if seed is not None:
                 raise InvalidValueError(
                     f"option world_seed {seed}: only generated worlds have one; "
-                    f"kinds: {', '.join(GENERATORS)}"
+                    f"kinds: {', '.join(KINDS)}"
                 )
             self.current = self.current or self._compile(self._name, self._scene)
             return self.current
@@ -108,8 +114,12 @@ class WorldSource:
         return self._first + int(rng.integers(self._kept or 1 << 30))
 
     def _generated(self, seed: int) -> EpisodeWorld:
-        generated = generate(self._kind, seed)
-        world = self._compile("empty", generated.scene, generated.start, generated.goal)
+        if self._kind == moving_worlds.KIND:
+            scene = moving_worlds.moving_scene(seed)
+            world = self._compile("empty", scene, dynabarn.START, dynabarn.GOAL)
+        else:
+            drawn = generate(self._kind, seed)
+            world = self._compile("empty", drawn.scene, drawn.start, drawn.goal)
         if self._kept or self._seed is not None:
             self._worlds[seed] = world
         return world

@@ -20,16 +20,24 @@ _ROUND = (
 _CLEAR_M = 0.01  # an obstacle that ends this near the floor is part of it
 
 
-def outlines_of(compiled: Compiled, data: mujoco.MjData) -> list[NDArray[np.float64]]:
+def outlines_of(
+    compiled: Compiled, data: mujoco.MjData, *, actors: bool
+) -> list[NDArray[np.float64]]:
     """Return a convex outline (N, 2) of each obstacle, in the world frame (m).
 
     Obstacles above and below the robot are left out. Boxes and upright round shapes are
     exact (to a polygon), others are covered by their bounding box.
+
+    Args:
+        compiled: the scene.
+        data: with the kinematics up to date.
+        actors: those of the actors instead of those of all other obstacles.
     """
     robot = np.flatnonzero(compiled.is_robot)
     low, high = bounds_of(compiled.model, data, robot)
     floor, top = float(low[:, 2].min()) + _CLEAR_M, float(high[:, 2].max())
-    obstacles = np.flatnonzero(compiled.is_obstacle)
+    scripted = compiled.model.body_mocapid[compiled.model.geom_bodyid] >= 0
+    obstacles = np.flatnonzero(compiled.is_obstacle & (scripted == actors))
     low, high = bounds_of(compiled.model, data, obstacles)
     near = (high[:, 2] > floor) & (low[:, 2] < top)
     return [_outline(compiled.model, data, int(geom)) for geom in obstacles[near]]

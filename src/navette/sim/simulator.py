@@ -300,10 +300,10 @@ class Simulator:
         self._refresh()
         return self.cameras[index].render(self.compiled.model, self._data)
 
-    def outlines(self) -> list[NDArray[np.float64]]:
-        """Outlines (N, 2) of the obstacles from above, within the robot's height."""
+    def outlines(self, *, actors: bool = False) -> list[NDArray[np.float64]]:
+        """Outlines (N, 2) from above of the actors, or else of the other obstacles."""
         self._refresh()
-        return outlines_of(self.compiled, self._data)
+        return outlines_of(self.compiled, self._data, actors=actors)
 
     def wheel_odometry(self) -> WheelOdometry:
         """Dead reckoning up to now; starts at the true pose."""

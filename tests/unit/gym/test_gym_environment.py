@@ -206,6 +206,31 @@ def test_wheel_odometry_is_observed_if_the_robot_has_it() -> None:
     assert math.dist(observation["goal"], true) > 0.02
 
 
+def test_moving_obstacles_are_sensed_but_block_no_path() -> None:
+    env = make("dynabarn-like", robot="jackal", worlds=1, render_mode="rgb_array")
+    first, info = env.reset(seed=0)
+    assert len(env._world.simulator.outlines(actors=True)) >= 8
+    assert info["distance_m"] == pytest.approx(20.0, rel=0.1)
+    before = env.render()
+    for _ in range(10):
+        later, _, terminated, *_ = env.step(STAND)
+        assert not terminated
+    moved = np.abs(later["ranges"] - first["ranges"]) > 0.1
+    assert moved.sum() > 20
+    assert not np.array_equal(before, env.render())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ["racecar", "mecanum"])
+def test_other_drives_reach_a_goal_ahead(robot: str) -> None:
+    env = make("empty", robot=robot, tolerance_m=0.3)
+    env.reset(options={"start": (0.0, 0.0, 0.0), "goal": (3.0, 0.0)})
+    ended: list[bool] = [False]
+    while not any(ended):
+        _, _, *ended, info = env.step(0.5 * FORWARD)
+    assert info["outcome"] == "reached"
+
+
 def test_pictures_show_the_episode() -> None:
     env = make("arena", render_mode="rgb_array")
     env.reset(seed=0)
