@@ -1,7 +1,7 @@
 """Failures stop the robot: lost sensors, nodes that raise."""
 
 import math
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -48,6 +48,34 @@ def test_a_lost_sensor_stops_the_robot_within_half_a_second(
     )
     simulation.executor.spin_for(STOP_WITHIN_NS)
     assert speed(simulation) < 0.02
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ["course", "husky"])
+def test_lost_scans_do_not_stop_the_robot(
+    simulate: MakeSimulation, monkeypatch: pytest.MonkeyPatch, robot: str
+) -> None:
+    simulation = driving(simulate, robot)
+    publish = simulation.sim.publish
+    rng = np.random.default_rng(5)
+    lost: list[bool] = []
+
+    def lossy(name: str, msg: Any) -> None:
+        if name == "/lidar":
+            # One in ten, never three in a row, now and then two.
+            lost.append(bool(rng.random() < 0.1) and lost[-2:] != [True, True])
+            if lost[-1]:
+                return
+        publish(name, msg)
+
+    monkeypatch.setattr(simulation.sim, "publish", lossy)
+    slowest = 1.0
+    for _ in range(80):
+        simulation.executor.spin_for(SECOND // 20)
+        slowest = min(slowest, speed(simulation))
+    assert [True, True] in [lost[i : i + 2] for i in range(len(lost))]
+    assert sum(lost) >= len(lost) // 20
+    assert slowest > 0.3
 
 
 @pytest.mark.slow

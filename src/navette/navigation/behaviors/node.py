@@ -26,6 +26,7 @@ from navette.navigation.behaviors.servers.behavior_server import (
 from navette.navigation.grids import CollisionCheck, ObstacleTracker
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime.stage.commander import Commander
+from navette.runtime.stage.input_period import InputPeriod
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 
@@ -113,6 +114,7 @@ class BehaviorNode(StageNode):
         """Store the newest pose."""
         if self._tracker.update(msg):
             self._located_ns = self._now_ns
+            self._odometry_period.note(self._now_ns)
 
     def on_costmap_points(self, msg: PointCloud2) -> None:
         """Store where the beams of a costmap ended."""
@@ -130,6 +132,7 @@ class BehaviorNode(StageNode):
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap; it is placed while a goal is active."""
+        self._costmap_period.note(self._now_ns)
         self._obstacles.receive(msg, self._now_ns)
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -187,6 +190,7 @@ class BehaviorNode(StageNode):
         )
         self._collision = CollisionCheck(params.body())
         self._located_ns = None
+        self._odometry_period, self._costmap_period = InputPeriod(), InputPeriod()
 
     def _new_timer(self) -> Any:
         return self.create_timer(1 / self.params.rate_hz, self._tick, autostart=False)
@@ -218,11 +222,17 @@ class BehaviorNode(StageNode):
         params = self.params
         self._place_obstacles()
         motion = None
-        if self._is_recent(self._located_ns, params.odometry_timeout_s):
+        odometry_timeout_s = self._odometry_period.timeout_s(
+            params.odometry_timeout_s, params.stale_periods
+        )
+        costmap_timeout_s = self._costmap_period.timeout_s(
+            params.costmap_timeout_s, params.stale_periods
+        )
+        if self._is_recent(self._located_ns, odometry_timeout_s):
             pose = self._tracker.predicted_now(self._now_ns)
             motion = pose and MeasuredMotion(pose, *self._tracker.velocity)
         placed_ns = self._obstacles.placed_ns
-        recent = self._is_recent(placed_ns, params.costmap_timeout_s)
+        recent = self._is_recent(placed_ns, costmap_timeout_s)
         return BehaviorInputs(motion, recent)
 
     def _is_recent(self, arrival_ns: int | None, timeout_s: float) -> bool:

@@ -70,10 +70,17 @@ class BehaviorParams(Params):
     )
 
     odometry_timeout_s: float = param(
-        0.25, "age of odometry that stops the robot", unit="s", above=0.0
+        0.25, "least age of odometry that stops the robot", unit="s", above=0.0
     )
     costmap_timeout_s: float = param(
-        0.3, "age of the costmap that stops the robot", unit="s", above=0.0
+        0.3, "least age of the costmap that stops the robot", unit="s", above=0.0
+    )
+    stale_periods: float = param(
+        3.2,
+        "odometry and costmap are stale after this many of their measured periods (up "
+        "to 0.42 s), if that is longer than their timeouts",
+        at_least=1.0,
+        at_most=100.0,
     )
     failure_tolerance_s: float = param(
         1.0, "a behavior fails after this long with stale inputs", unit="s",

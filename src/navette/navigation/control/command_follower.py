@@ -180,7 +180,9 @@ class CommandFollower:
         stale = self._gate.stale(inputs.ages)
         if self._rest is not None or stale is not None or not inputs.plausible:
             state = self._rest or stale or ControlState.STALE_ODOMETRY
-            return self._emit(STOP, state)
+            output = self._emit(STOP, state)
+            self._last = None  # continue from the measured motion
+            return output
         last = clamp(
             self._last or VelocityCommand(inputs.speed, inputs.turn_rate), self._params
         )
@@ -203,7 +205,7 @@ class CommandFollower:
             self._limited_by = LimitedBy.ACCELERATION
         else:
             self._limited_by = LimitedBy.NONE
-        return self._keep_clear(inputs.pose, command)
+        return self._keep_clear(inputs.pose, self._gate.eased(command, inputs.ages))
 
     def _stopping(self, inputs: FollowerInputs) -> SpeedCap:
         """Return the limits from which the robot can stop at the end of the path."""

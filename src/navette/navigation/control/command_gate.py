@@ -8,15 +8,23 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.states import ControlState
 
 _ROUNDING = 1e-6
+# Share of the timeout from which an input is late, and of the speed at the timeout.
+_LATE = 0.5
+_SLOWEST = 1 / 3
 
 
 @dataclass(frozen=True)
 class InputAges:
-    """Seconds since each input last arrived; ``inf``: never."""
+    """Seconds since each input last arrived; ``inf``: never.
+
+    The timeouts follow the measured rate of the input; 0: those of the parameters.
+    """
 
     odometry_s: float = 0.0
     costmap_s: float = 0.0
     planner_s: float = 0.0
+    odometry_timeout_s: float = 0.0
+    costmap_timeout_s: float = 0.0
 
 
 FRESH = InputAges()
@@ -38,14 +46,45 @@ class CommandGate:
         Written so that an age of NaN counts as stale.
         """
         params = self.params
-        if not ages.odometry_s <= params.odometry_timeout_s:
+        odometry_timeout_s, costmap_timeout_s = self._timeouts(ages)
+        if not ages.odometry_s <= odometry_timeout_s:
             return ControlState.STALE_ODOMETRY
-        if params.collision_check and not ages.costmap_s <= params.costmap_timeout_s:
+        if params.collision_check and not ages.costmap_s <= costmap_timeout_s:
             return ControlState.STALE_COSTMAP
         planner_timeout_s = params.planner_timeout_s or math.inf
         if not ages.planner_s <= planner_timeout_s:
             return ControlState.STALE_PATH
         return None
+
+    def eased(self, command: VelocityCommand, ages: InputAges) -> VelocityCommand:
+        """Return the command, slower while odometry or costmap is late.
+
+        From half of the timeout on, the limits fall linearly to a third at the timeout:
+        a lost message costs little speed, and a lost sensor little way.
+        """
+        odometry_timeout_s, costmap_timeout_s = self._timeouts(ages)
+        late = ages.odometry_s / odometry_timeout_s
+        if self.params.collision_check:
+            late = max(late, ages.costmap_s / costmap_timeout_s)
+        if late <= _LATE:
+            return command
+        share = 1.0 - (1.0 - _SLOWEST) * (late - _LATE) / (1.0 - _LATE)
+        params = self.params
+        cruise = params.cruise_speed_mps
+        if command.speed < 0:
+            cruise = params.reverse_speed_mps
+        speed = math.hypot(command.speed, command.side) / cruise
+        turning = abs(command.turn_rate) / params.max_turn_rate_radps
+        fastest = max(speed, turning)
+        return command.scaled(share / fastest) if fastest > share else command
+
+    def _timeouts(self, ages: InputAges) -> tuple[float, float]:
+        """Return the timeouts of odometry and costmap."""
+        params = self.params
+        return (
+            ages.odometry_timeout_s or params.odometry_timeout_s,
+            ages.costmap_timeout_s or params.costmap_timeout_s,
+        )
 
     def refusal(self, command: VelocityCommand) -> ControlState | None:
         """Return the state for a command that must not pass, or None."""

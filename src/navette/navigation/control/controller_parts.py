@@ -8,6 +8,9 @@ from navette.navigation.control.steering import Steering, make_steering
 from navette.navigation.control.turn_gain import TurnGain
 from navette.navigation.grids import CollisionCheck, MovingBody
 
+# Clearance beyond which the exact value is not published.
+_REPORTED_M = 0.3
+
 
 @dataclass(frozen=True)
 class ControllerParts:
@@ -29,7 +32,7 @@ def collision_check(params: ControlParams) -> CollisionCheck:
     body = MovingBody(
         footprint=Footprint.from_flat(params.footprint_m),
         margin_m=params.collision_margin_m,
-        horizon_m=params.slow_clearance_m,
+        horizon_m=_REPORTED_M,
         reaction_s=params.reaction_s,
         deceleration_mps2=params.deceleration_mps2,
         turn_acceleration_radps2=params.turn_acceleration_radps2,

@@ -7,12 +7,14 @@ from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.limits import STOP, VelocityCommand
 from navette.navigation.control.path_pieces import DrivePiece
 from navette.navigation.control.piece_progress import PathPoint, PieceProgress
+from navette.navigation.control.predicted_motion import PredictedMotion
 from navette.navigation.control.records import FollowerInputs, StepDecision
 from navette.navigation.control.rotate import STANDSTILL_MPS, TurnInPlace
 from navette.navigation.control.speed_profile import (
     approach_speed,
     cruise_speed,
     speed_profile,
+    stopping_distance,
 )
 from navette.navigation.control.states import ControlState, LimitedBy
 
@@ -40,6 +42,7 @@ class PieceDrive:
         self._cruise = cruise_speed(piece, parts.params)
         self._speeds = speed_profile(piece, parts.params)
         self._progress = PieceProgress(piece, start_window)
+        self._predicted = PredictedMotion(piece)
         self._turn: TurnInPlace | None = None
         self.at = PathPoint(0, 0.0, 0.0, 0.0)
 
@@ -48,13 +51,8 @@ class PieceDrive:
         """Arc length (m) to the end of the piece."""
         return max(0.0, self._piece.length - self.at.s)
 
-    def step(self, inputs: FollowerInputs, clearance: float) -> StepDecision | None:
-        """Return the next command, or None at the end of the piece.
-
-        Args:
-            inputs: pose and motion of the robot.
-            clearance: clearance of the body (m) at the last collision check.
-        """
+    def step(self, inputs: FollowerInputs) -> StepDecision | None:
+        """Return the next command, or None at the end of the piece."""
         parts, params = self._parts, self._parts.params
         self.at = at = self._progress.update(inputs.pose)
         if self._piece.length - at.s <= _STOP_SHARE * params.goal_tolerance_m:
@@ -67,7 +65,7 @@ class PieceDrive:
         if inputs.speed * self._piece.direction < -STANDSTILL_MPS:
             return StepDecision(STOP, ControlState.FOLLOWING, brakes=True)
         kappa = parts.steering.curvature(self._piece, at, inputs.pose, inputs.speed)
-        speed, cause = self._speed(kappa, inputs.speed, clearance)
+        speed, cause = self._speed(kappa, inputs.speed)
         v = speed * self._piece.direction
         command = VelocityCommand(v, v * kappa / parts.turn_gain.value)
         return StepDecision(command, ControlState.FOLLOWING, limited_by=cause)
@@ -105,9 +103,21 @@ class PieceDrive:
             return None
         return decision
 
-    def _speed(
-        self, kappa: float, speed: float, clearance: float
-    ) -> tuple[float, LimitedBy]:
+    def _free_m(self, speed: float) -> float:
+        """Return the distance (m) to a collision along the predicted motion."""
+        params = self._parts.params
+        if not params.collision_check:
+            return math.inf
+        v = max(abs(speed), self._cruise)
+        ahead = stopping_distance(v, params)
+        poses = self._predicted.poses(self.at, ahead, params.lookahead_m)
+        tight = self._parts.collision.first_tight(poses)
+        if tight == len(poses):
+            return math.inf
+        first = min(self.at.sample + 1, len(self._piece.s) - 1)
+        return max(0.0, self._piece.s[first + max(0, tight - 1)] - self.at.s)
+
+    def _speed(self, kappa: float, speed: float) -> tuple[float, LimitedBy]:
         """Return the least of the limits, and which one that is."""
         params = self._parts.params
         ahead = self._piece.index_at(self.at.s + _PREVIEW_S * abs(speed))
@@ -126,9 +136,8 @@ class PieceDrive:
         v *= max(_SLOWEST, aligned)
         if aligned < _ALIGNED:
             cause = LimitedBy.HEADING
-        span = params.slow_clearance_m - params.collision_margin_m
-        if span > 0 and clearance < params.slow_clearance_m:
-            share = (clearance - params.collision_margin_m) / span
-            near = self._cruise * max(_SLOWEST, share)
-            v, cause = min((v, cause), (near, LimitedBy.CLEARANCE))
+        # The last word has the check of the command, which stops the robot.
+        free = approach_speed(self._free_m(speed), speed, params)
+        free = max(free, _SLOWEST * self._cruise)
+        v, cause = min((v, cause), (free, LimitedBy.CLEARANCE))
         return v, cause

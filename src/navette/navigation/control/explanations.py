@@ -66,9 +66,9 @@ def explain(state: ControlState, now: Situation, params: ControlParams) -> str:
         case ControlState.STALE_COSTMAP:
             return (
                 f"no costmap {_for(now.ages.costmap_s)} on {topics.COSTMAP.name} "
-                f"(limit {params.costmap_timeout_s:g} s): is the costmap node running, "
-                "and the lidar publishing? Without a costmap set collision_check to "
-                "false"
+                f"(limit {now.ages.costmap_timeout_s:g} s): is the costmap node "
+                "running, and the lidar publishing? Without a costmap set "
+                "collision_check to false"
             )
         case ControlState.STALE_PATH:
             return (
@@ -125,7 +125,7 @@ def _stale_odometry(now: Situation, params: ControlParams) -> str:
         )
     return (
         f"no odometry {_for(now.ages.odometry_s)} on {topic} (limit "
-        f"{params.odometry_timeout_s:g} s): navette topic hz {topic}"
+        f"{now.ages.odometry_timeout_s:g} s): navette topic hz {topic}"
     )
 
 

@@ -54,6 +54,7 @@ from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
+from navette.runtime.stage.input_period import InputPeriod
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output, StageNode
@@ -171,6 +172,7 @@ class ControlNode(StageNode):
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
+        self._odometry_period, self._costmap_period = InputPeriod(), InputPeriod()
         self._planner_ns = _NEVER
         self._odometry_frame = ""
         self._explained_ns: dict[ControlState, int] = {}
@@ -224,6 +226,7 @@ class ControlNode(StageNode):
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message for the next step."""
         self._odometry = msg
+        self._odometry_period.note(self._now_ns)
         self._odometry_ns = self._now_ns
         self._odometry_frame = msg.child_frame_id
 
@@ -243,6 +246,7 @@ class ControlNode(StageNode):
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap until the pose at its stamp is available."""
+        self._costmap_period.note(self._now_ns)
         self._obstacles.receive(msg, self._now_ns)
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -318,6 +322,8 @@ class ControlNode(StageNode):
         self._path = np.empty((0, 3))
         self._obstacles.reset()
         self._moving = MovingDiscs(NO_DISCS, 0)
+        self._odometry_period.reset()
+        self._costmap_period.reset()
         self._odometry = None
         self._odometry_ns = self._located_ns = _NEVER
         self._planner_ns = _NEVER
@@ -407,7 +413,7 @@ class ControlNode(StageNode):
         self._send(output)
         self._report(output)
         self._report_collision(output)
-        fresh = inputs.ages.odometry_s <= self.params.odometry_timeout_s
+        fresh = inputs.ages.odometry_s <= inputs.ages.odometry_timeout_s
         self._follow_server.step(output, inputs, fresh=fresh)
 
     def _step(self, inputs: FollowerInputs) -> FollowerOutput:
@@ -454,11 +460,18 @@ class ControlNode(StageNode):
         self._odometry = None
 
     def _ages(self) -> InputAges:
+        params: ControlParams = self.params
         return InputAges(
             odometry_s=self._age_s(self._located_ns),
             costmap_s=self._age_s(self._placed_ns),
             # The client of a goal need not be alive: its path has an end.
             planner_s=0.0 if self._follows_goal else self._age_s(self._planner_ns),
+            odometry_timeout_s=self._odometry_period.timeout_s(
+                params.odometry_timeout_s, params.stale_periods
+            ),
+            costmap_timeout_s=self._costmap_period.timeout_s(
+                params.costmap_timeout_s, params.stale_periods
+            ),
         )
 
     def _age_s(self, arrival_ns: int) -> float:
@@ -562,7 +575,7 @@ class ControlNode(StageNode):
 
     def _report_collision(self, output: FollowerOutput) -> None:
         """Publish what the collision check does to the command when it changes."""
-        action = _collision_action(output, self.params.slow_clearance_m)
+        action = _collision_action(output)
         if action == self._collision_action:
             return
         self._collision_action = action
@@ -573,12 +586,12 @@ class ControlNode(StageNode):
         )
 
 
-def _collision_action(output: FollowerOutput, slow_clearance_m: float) -> int:
+def _collision_action(output: FollowerOutput) -> int:
     if output.state is ControlState.BLOCKED:
         return CollisionMonitorState.STOP
     if output.collision_scale < 1.0:
         return CollisionMonitorState.APPROACH
-    if output.state.moves and output.clearance_m < slow_clearance_m:
+    if output.limited_by is LimitedBy.CLEARANCE:
         return CollisionMonitorState.SLOWDOWN
     return CollisionMonitorState.DO_NOTHING
 

@@ -124,10 +124,6 @@ class ControlParams(Params):
     collision_margin_m: float = param(
         0.025, "clearance that every commanded motion keeps", unit="m", at_least=0.0
     )
-    slow_clearance_m: float = param(
-        0.3, "clearance below which the robot slows down; 0: never", unit="m",
-        at_least=0.0,
-    )  # fmt: skip
     blind_reverse_m: float = param(
         0.1,
         "how far the body may leave its outline, where the robot was put down, into "
@@ -188,10 +184,17 @@ class ControlParams(Params):
     )
 
     odometry_timeout_s: float = param(
-        0.14, "age of odometry that stops the robot", unit="s", above=0.0
+        0.14, "least age of odometry that stops the robot", unit="s", above=0.0
     )
     costmap_timeout_s: float = param(
-        0.19, "age of the costmap that stops the robot", unit="s", above=0.0
+        0.19, "least age of the costmap that stops the robot", unit="s", above=0.0
+    )
+    stale_periods: float = param(
+        3.2,
+        "odometry and costmap are stale after this many of their measured periods (up "
+        "to 0.42 s), if that is longer than their timeouts",
+        at_least=1.0,
+        at_most=100.0,
     )
     planner_timeout_s: float = param(
         2.0, "no /path or /planner/status for this long stops the robot; 0: never",

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import ACKERMANN, Footprint, Pose2
-from navette.navigation.control.command_gate import CommandGate
+from navette.navigation.control.command_gate import CommandGate, InputAges
 from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.drive import PieceDrive
 from navette.navigation.control.limits import (
@@ -127,11 +127,14 @@ class PathFollower:
         """Return the command for the next ``dt`` seconds.
 
         1. stop on stale inputs; 2. update the turn gain; 3. steer along the piece;
-        4. accelerate within the limits; 5. keep clear of obstacles; 6. gate.
+        4. accelerate within the limits; 5. slow down while inputs are late;
+        6. keep clear of obstacles; 7. gate.
         """
         stale = self._gate.stale(inputs.ages)
         if self._rest is not None or stale is not None or not inputs.plausible:
-            return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
+            output = self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
+            self._last = None  # continue from the measured motion
+            return output
         last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
         last = clamp(last, self._params)
         self._parts.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
@@ -148,6 +151,7 @@ class PathFollower:
             command = approach(last, decision.command, self._params, dt)
             if abs(command.speed) < abs(decision.command.speed) - 1e-6:
                 self._limited_by = LimitedBy.ACCELERATION
+        command = self._eased(command, inputs.ages)
         command, blocked = self._keep_clear(inputs.pose, decision, command)
         state = ControlState.BLOCKED if blocked else decision.state
         return self._emit(command, state)
@@ -155,10 +159,7 @@ class PathFollower:
     def _steer(self, inputs: FollowerInputs) -> StepDecision:
         """Step the active piece; at its end the next one, at the last one stop."""
         while self._active is not None:
-            if isinstance(self._active, PieceDrive):
-                decision = self._active.step(inputs, self._clearance)
-            else:
-                decision = self._active.step(inputs)
+            decision = self._active.step(inputs)
             if decision is not None:
                 return decision
             self._pieces.pop(0)
@@ -180,6 +181,12 @@ class PathFollower:
             self._active = PieceDrive(piece, self._parts, start_window)
         else:
             self._active = TurnInPlace(piece.yaw, piece.turn, self._parts)
+
+    def _eased(self, command: VelocityCommand, ages: InputAges) -> VelocityCommand:
+        eased = self._gate.eased(command, ages)
+        if eased != command:
+            self._limited_by = LimitedBy.LATE_DATA
+        return eased
 
     def _keep_clear(
         self, pose: Pose2, decision: StepDecision, command: VelocityCommand

@@ -174,7 +174,9 @@ class PredictiveFollower:
         """Return the command for the next ``dt`` seconds."""
         stale = self._mode.gate.stale(inputs.ages)
         if self._rest is not None or stale is not None or not inputs.plausible:
-            return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
+            output = self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
+            self._last = None  # continue from the measured motion
+            return output
         assert self._path is not None, "a path is being followed"
         self._scale = 1.0
         self._advance(self._path, inputs.pose)
@@ -202,7 +204,8 @@ class PredictiveFollower:
             discs,
         )
         command = approach(last, wanted, params, dt)
-        return self._keep_clear(inputs.pose, command)
+        eased = self._mode.gate.eased(command, inputs.ages)
+        return self._keep_clear(inputs.pose, eased)
 
     def _near_discs(self, pose: Pose2) -> NDArray[np.float64]:
         """Return the moving obstacles that the robot can meet within the horizon."""

@@ -11,6 +11,7 @@ from navette.navigation.control.path_pieces import DrivePiece
 # errors (real wheels turn 10–25 % slower than commanded).
 _TURN_SHARE = 0.8
 _BRAKE_SHARE = 0.8
+_DELAY_S = 0.15  # from a command to the motion
 
 
 def cruise_speed(piece: DrivePiece, params: ControlParams) -> float:
@@ -48,8 +49,14 @@ def approach_speed(distance: float, speed: float, params: ControlParams) -> floa
     root's infinite slope at the end is limited by ``d / 0.3 s``: a drive that lags
     would overshoot on the bare root.
     """
-    left = max(0.0, distance - 0.15 * abs(speed))
+    left = max(0.0, distance - _DELAY_S * abs(speed))
     return min(
         math.sqrt(2 * _BRAKE_SHARE * params.deceleration_mps2 * left),
         max(0.0, distance) / 0.3,
     )
+
+
+def stopping_distance(speed: float, params: ControlParams) -> float:
+    """Return the distance (m) from which :func:`approach_speed` is this speed."""
+    brakes = speed**2 / (2 * _BRAKE_SHARE * params.deceleration_mps2)
+    return max(_DELAY_S * speed + brakes, 0.3 * speed)

@@ -112,6 +112,13 @@ class CollisionCheck:
         """Return how long (s, ≤ ``span_s``) a constant motion stays clear."""
         return self._free(pose, v, omega, span_s)[0]
 
+    def first_tight(self, poses: Array) -> int:
+        """Return the index of the first of poses (N, 3) within the margin, or N."""
+        body = (self._radius, self._half_cell, self._body.margin_m)
+        return tight_pose(
+            self._points, self._outline, np.ascontiguousarray(poses), np.array(body)
+        )
+
     def reverse_share(self, pose: Pose2, speed: float) -> float:
         """Return the share of a reverse ``speed`` (m/s) that unseen space allows."""
         if not len(self._unseen):
@@ -172,6 +179,14 @@ class CollisionCheck:
         return min(_MAX_POSES, math.ceil(travel / _STEP_M))
 
 
+@kernel(signature="float64(float64, float64)")
+def _least(now: float, margin: float) -> float:
+    """Return the clearance to keep: within the margin, along and away is allowed."""
+    if now >= margin:
+        return margin
+    return max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - 1e-3
+
+
 @kernel(signature="UniTuple(float64, 3)(float64[::1], float64)")
 def _moved(motion: Array, t: float) -> tuple[float, float, float]:
     """Return the pose after ``t`` seconds of a motion, see :func:`free_motion`."""
@@ -210,10 +225,7 @@ def free_motion(
     reach = radius + half_cell
     far = half_cell + horizon
     now = body_distance(points, outline, x, y, yaw, reach, far) - half_cell
-    least = margin
-    if now < margin:
-        # Within the margin: motion away and along is allowed, closer almost not.
-        least = max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - 1e-3
+    least = _least(now, margin)
     for i in range(1, poses + 1):
         px, py, pyaw = _moved(motion, duration * i / poses)
         near = half_cell + least + _SLACK_M
@@ -221,6 +233,33 @@ def free_motion(
         if there - half_cell < least:
             return duration * (i - 1) / poses, now
     return duration, now
+
+
+@kernel(
+    signature="int64(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
+)
+def tight_pose(points: Array, outline: Array, poses: Array, body: Array) -> int:
+    """Return the index of the first of poses (N, 3) within the margin, or N.
+
+    The clearance at the first pose is kept where it is below the margin.
+
+    Args:
+        points: obstacles (N, 2), metres, map.
+        outline: polygon (K, 2), metres, base.
+        poses: x, y, yaw (map).
+        body: circumscribed radius, half a cell, margin; metres.
+    """
+    radius, half_cell, margin = body
+    reach, near = radius + half_cell, half_cell + margin + _SLACK_M
+    least = margin
+    for i in range(poses.shape[0]):
+        x, y, yaw = poses[i, 0], poses[i, 1], poses[i, 2]
+        there = body_distance(points, outline, x, y, yaw, reach, near) - half_cell
+        if i == 0:
+            least = _least(there, margin)
+        if there < least:
+            return i
+    return poses.shape[0]
 
 
 @kernel(
