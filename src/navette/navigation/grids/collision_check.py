@@ -115,9 +115,9 @@ class CollisionCheck:
     def first_tight(self, poses: Array) -> int:
         """Return the index of the first of poses (N, 3) within the margin, or N."""
         body = (self._radius, self._half_cell, self._body.margin_m)
-        return tight_pose(
-            self._points, self._outline, np.ascontiguousarray(poses), np.array(body)
-        )
+        poses = np.ascontiguousarray(poses)
+        first: int = tight_pose(self._points, self._outline, poses, np.array(body))
+        return first
 
     def reverse_share(self, pose: Pose2, speed: float) -> float:
         """Return the share of a reverse ``speed`` (m/s) that unseen space allows."""
@@ -259,7 +259,8 @@ def tight_pose(points: Array, outline: Array, poses: Array, body: Array) -> int:
             least = _least(there, margin)
         if there < least:
             return i
-    return poses.shape[0]
+    count: int = poses.shape[0]
+    return count
 
 
 @kernel(

@@ -229,14 +229,30 @@ def test_a_small_turn_that_is_not_free_is_steered_instead() -> None:
     assert closest(result, post) > 0.0
 
 
-def test_a_narrow_corridor_is_driven_slowly() -> None:
+def test_obstacles_beside_the_path_do_not_slow_the_robot_down() -> None:
     walls = np.concatenate((seg((-3, 0.83), (14, 0.83)), seg((-3, -0.83), (14, -0.83))))
     follower = PathFollower(big_robot())
     follower.set_obstacles(walls, 0.05)
     follower.set_path(tangent_path(PATHS["straight"]))
     result = run(follower, Plant(Pose2(0, 0, 0)), 40.0)
     assert result.final.state == "reached"
-    assert max(result.speeds) < 0.6
+    assert max(result.speeds) > 1.45
+    assert "clearance" not in {output.limited_by for output in result.outputs}
+
+
+def test_an_obstacle_on_the_path_is_approached_slowly() -> None:
+    follower = PathFollower(big_robot())
+    follower.set_obstacles(np.array([[8.0, 0.4]]), 0.05)
+    follower.set_path(tangent_path(PATHS["straight"]))
+    plant = Plant(Pose2(0, 0, 0))
+    result = run(follower, plant, 20.0)
+    assert result.final.state == "blocked"
+    assert closest(result, np.array([[8.0, 0.4]])) > 0.05
+    limits = [output.limited_by for output in result.outputs]
+    slow = limits.index("clearance")
+    assert result.speeds[slow] > 1.0
+    braking = np.diff(result.speeds[slow:])
+    assert braking.min() > -0.08  # no sudden stop
 
 
 @pytest.mark.parametrize(
