@@ -101,7 +101,8 @@ DIMENSIONLESS = (
     r"\w+_probability|belief_limit|occupied_threshold|lidar_dropout",
     r"mppi_(\w+_weight|temperature|samples|steps)",
     r"(progress|goal)_reward|(time|contact)_penalty",
-    r"(clearance|map_cost)_weight|unknown_cost|(reverse|evasion)_factor|(switch|frontier)_gain",
+    r"(clearance|map_cost)_weight|unknown_cost|(reverse|evasion)_factor|stale_periods",
+    r"(switch|frontier)_gain",
 )
 
 

@@ -61,7 +61,7 @@ class StallMonitor:
         """Restart: the robot was stopped or moved by someone else."""
         self._steps: deque[_Step] = deque()
         self._span_s = 0.0
-        self._expected = _REST
+        self._lagging = _REST
 
     def update(
         self, command: Sequence[float], pose: Pose2, measured: Sequence[float],
@@ -80,10 +80,12 @@ class StallMonitor:
             return False
         given, found = _Motion(*command), _Motion(*measured)
         share = min(1.0, dt / _LAG_S)
-        self._expected = wanted = _Motion(
+        self._lagging = _Motion(
             *(old + share * (new - old)
-              for old, new in zip(self._expected, given, strict=True))
+              for old, new in zip(self._lagging, given, strict=True))
         )  # fmt: skip
+        # A drive may lag behind its command, or follow it at once.
+        wanted = _Motion(*map(_common, given, self._lagging))
         speed = math.hypot(wanted.speed, wanted.side)
         moved = found.along(wanted) / speed if speed else 0.0
         turned = math.copysign(1.0, wanted.turn_rate) * found.turn_rate
@@ -130,3 +132,8 @@ class StallMonitor:
         turn = sum(step.turn for step in self._steps)
         turned = sum(step.turned for step in self._steps)
         return turn >= _LEAST_RAD and turned < _LEAST_SHARE * turn
+
+
+def _common(a: float, b: float) -> float:
+    """Return the smaller of two values of one sign, else 0."""
+    return math.copysign(min(abs(a), abs(b)), a) if a * b > 0 else 0.0

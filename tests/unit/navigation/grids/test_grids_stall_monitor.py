@@ -60,6 +60,13 @@ def test_starting_does_not_count() -> None:
         speed += 0.25 * (command[0] - speed)
 
 
+def test_a_sudden_stop_and_a_turn_back_do_not_count() -> None:
+    monitor = StallMonitor(0.3)
+    commands = [(1.0, 1.0)] * 10 + [(0.0, 0.0)] * 10 + [(0.0, -1.0)] * 10
+    for command in commands:
+        assert not monitor.update(command, HERE, command, DT)
+
+
 def stalled() -> StallMonitor:
     monitor = StallMonitor(0.3)
     while not monitor.update(AHEAD, HERE, (0.0, 0.0), DT):
