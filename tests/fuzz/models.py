@@ -123,23 +123,20 @@ def mjcf_world_with_large_memory(folder: Path) -> Path:
 
 
 def sdf_robot_with_a_dense_lidar(folder: Path) -> Path:
-    sensor = (
-        '<sensor name="s" type="ray"><update_rate>10</update_rate><ray><scan>'
-        "<horizontal><samples>100000000</samples><min_angle>-3</min_angle>"
-        "<max_angle>3</max_angle></horizontal></scan><range><min>0.1</min><max>10</max>"
-        "</range></ray></sensor>"
-    )
-    return _robot_with(folder / "lidar.sdf", sensor)
+    return _robot_with(folder / "lidar.sdf", _lidar(rate_hz="10", beams=100_000_000))
 
 
 def sdf_robot_with_a_fast_lidar(folder: Path) -> Path:
-    sensor = (
-        '<sensor name="s" type="ray"><update_rate>1e12</update_rate><ray><scan>'
-        "<horizontal><samples>10</samples><min_angle>-3</min_angle>"
+    return _robot_with(folder / "fast.sdf", _lidar(rate_hz="1e12", beams=10))
+
+
+def _lidar(rate_hz: str, beams: int) -> str:
+    return (
+        f'<sensor name="s" type="ray"><update_rate>{rate_hz}</update_rate><ray><scan>'
+        f"<horizontal><samples>{beams}</samples><min_angle>-3</min_angle>"
         "<max_angle>3</max_angle></horizontal></scan><range><min>0.1</min><max>10</max>"
         "</range></ray></sensor>"
     )
-    return _robot_with(folder / "fast.sdf", sensor)
 
 
 def sdf_robot_with_a_large_camera(folder: Path) -> Path:

@@ -45,38 +45,44 @@ _STAMPED = "geometry_msgs/msg/TwistStamped"
 P = TypeVar("P", bound=Params)
 
 
+def _commands(
+    topic: topics.StackTopic, meaning: str, *, checks_contents: bool = False
+) -> Input:
+    """Declare an input of commands.
+
+    Contents are usually not checked: an invalid command stops the robot, a dropped one
+    would leave the last one valid.
+    """
+    return Input.of(
+        topic,
+        meaning,
+        other_types=(_STAMPED,),
+        checks_contents=checks_contents,
+        callback="on_command",
+    )
+
+
 class ArbiterNode(StageNode):
     """Pass on the velocity commands of one source; stop the robot on request."""
 
     PARAMS = ArbiterParams
     FIXED_AT_START = frozenset({"use_stamped"})
     INPUTS = (
-        Input.of(
+        _commands(
             topics.CMD_VEL_NAV,
             "commands of control and of behaviors (`topics.navigation`)",
-            other_types=(_STAMPED,),
-            checks_contents=False,  # an invalid command is zero, not the last one
-            callback="on_command",
         ),
-        Input.of(
-            topics.CMD_VEL_TELEOP,
-            "commands of the operator (`topics.operator`)",
-            other_types=(_STAMPED,),
-            checks_contents=False,  # an invalid command is zero, not the last one
-            callback="on_command",
+        _commands(
+            topics.CMD_VEL_TELEOP, "commands of the operator (`topics.operator`)"
         ),
-        Input.of(
+        _commands(
             topics.CMD_VEL,
             "commands of programs beside the arbiter (`topics.external`)",
-            other_types=(_STAMPED,),
-            checks_contents=False,  # an invalid command is zero, not the last one
-            callback="on_command",
         ),
-        Input.of(
+        _commands(
             topics.CMD_VEL_ASSISTED,
             "commands of the operator after a check (`topics.assisted_teleop`)",
-            other_types=(_STAMPED,),
-            callback="on_command",
+            checks_contents=True,
         ),
         Input.of(topics.PAUSE_NAVIGATION, "lock (`locks.pause`)", callback="on_lock"),
         Input.of(

@@ -5,6 +5,12 @@ from dataclasses import dataclass
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import DIFFERENTIAL, DRIVES, Footprint
 from navette.navigation.grids import MovingBody
+from navette.navigation.motion_params import (
+    acceleration_limit,
+    speed_limit,
+    turn_acceleration_limit,
+    turn_rate_limit,
+)
 from navette.params import Params, param
 
 
@@ -23,18 +29,12 @@ class BehaviorParams(Params):
         "motions of the base; a spin is refused with ackermann",
         choices=DRIVES,
     )
-    max_speed_mps: float = param(
-        0.5, "limit of the requested speed", unit="m/s", above=0.0
-    )
-    max_turn_rate_radps: float = param(1.0, "speed of a spin", unit="rad/s", above=0.0)
-    acceleration_mps2: float = param(
-        0.5, "limit on increasing the speed", unit="m/s²", above=0.0
-    )
-    deceleration_mps2: float = param(
-        0.5, "limit on decreasing the speed", unit="m/s²", above=0.0
-    )
-    turn_acceleration_radps2: float = param(
-        1.5, "limit on changing the turn rate", unit="rad/s²", above=0.0
+    max_speed_mps: float = speed_limit(0.5, "limit of the requested speed")
+    max_turn_rate_radps: float = turn_rate_limit(1.0, "speed of a spin")
+    acceleration_mps2: float = acceleration_limit(0.5, "limit on increasing the speed")
+    deceleration_mps2: float = acceleration_limit(0.5, "limit on decreasing the speed")
+    turn_acceleration_radps2: float = turn_acceleration_limit(
+        1.5, "limit on changing the turn rate"
     )
     distance_tolerance_m: float = param(
         0.01, "missing distance at which a drive is complete", unit="m", above=0.0

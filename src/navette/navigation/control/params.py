@@ -6,6 +6,12 @@ from dataclasses import dataclass
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import ACKERMANN, DIFFERENTIAL, DRIVES, OMNI, Footprint
 from navette.navigation.control.methods import CONTROLLERS
+from navette.navigation.motion_params import (
+    acceleration_limit,
+    speed_limit,
+    turn_acceleration_limit,
+    turn_rate_limit,
+)
 from navette.params import Params, param
 
 
@@ -26,17 +32,15 @@ class ControlParams(Params):
         "sideways, too (omni)",
         choices=DRIVES,
     )
-    cruise_speed_mps: float = param(
-        0.5, "speed on a straight, free path", unit="m/s", above=0.0
+    cruise_speed_mps: float = speed_limit(0.5, "speed on a straight, free path")
+    reverse_speed_mps: float = speed_limit(
+        0.3, "speed on a straight, free path driven backwards"
     )
-    reverse_speed_mps: float = param(
-        0.3, "speed on a straight, free path driven backwards", unit="m/s", above=0.0
+    max_speed_mps: float = speed_limit(
+        2.0, "limit of the commanded speed, forward and reverse"
     )
-    max_speed_mps: float = param(
-        2.0, "limit of the commanded speed, forward and reverse", unit="m/s", above=0.0
-    )
-    max_turn_rate_radps: float = param(
-        1.0, "limit of the commanded turn rate", unit="rad/s", above=0.0
+    max_turn_rate_radps: float = turn_rate_limit(
+        1.0, "limit of the commanded turn rate"
     )
     max_side_speed_mps: float = param(
         0.0, "omni: limit of the speed to the left and to the right", unit="m/s",
@@ -48,17 +52,17 @@ class ControlParams(Params):
     steering_time_s: float = param(
         0.2, "ackermann: time from straight to the sharpest bend", unit="s", above=0.0
     )
-    acceleration_mps2: float = param(
-        1.0, "limit on increasing the commanded speed", unit="m/s²", above=0.0
+    acceleration_mps2: float = acceleration_limit(
+        1.0, "limit on increasing the commanded speed"
     )
-    deceleration_mps2: float = param(
-        1.0, "limit on decreasing the commanded speed", unit="m/s²", at_least=0.01
+    deceleration_mps2: float = acceleration_limit(
+        1.0, "limit on decreasing the commanded speed"
     )
-    turn_acceleration_radps2: float = param(
-        2.0, "limit on changing the commanded turn rate", unit="rad/s²", at_least=0.01
+    turn_acceleration_radps2: float = turn_acceleration_limit(
+        2.0, "limit on changing the commanded turn rate"
     )
-    lateral_acceleration_mps2: float = param(
-        1.0, "limit of speed² · curvature in bends", unit="m/s²", above=0.0
+    lateral_acceleration_mps2: float = acceleration_limit(
+        1.0, "limit of speed² · curvature in bends"
     )
     wheel_separation_m: float = param(
         0.0,

@@ -1,6 +1,6 @@
 """Leaves about paths, goals and poses, and selectors of plugins."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from py_trees.common import Status
 
@@ -151,12 +151,12 @@ class SelectorNode(LeafNode):
 
     WHAT: ClassVar[str]
 
-    @classmethod
-    def ports(cls, what: str) -> Ports:
-        return {
-            "topic_name": Port(default=f"{what}_selector"),
-            f"default_{what}": Port(),
-            f"selected_{what}": output_port(),
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.PORTS = {
+            "topic_name": Port(default=f"{cls.WHAT}_selector"),
+            f"default_{cls.WHAT}": Port(),
+            f"selected_{cls.WHAT}": output_port(),
         }
 
     def update(self) -> Status:
@@ -176,32 +176,27 @@ class PlannerSelectorNode(SelectorNode):
     """Choose the planner."""
 
     WHAT = "planner"
-    PORTS: ClassVar[Ports] = SelectorNode.ports(WHAT)
 
 
 class ControllerSelectorNode(SelectorNode):
     """Choose the controller."""
 
     WHAT = "controller"
-    PORTS: ClassVar[Ports] = SelectorNode.ports(WHAT)
 
 
 class SmootherSelectorNode(SelectorNode):
     """Choose the smoother."""
 
     WHAT = "smoother"
-    PORTS: ClassVar[Ports] = SelectorNode.ports(WHAT)
 
 
 class GoalCheckerSelectorNode(SelectorNode):
     """Choose the goal checker."""
 
     WHAT = "goal_checker"
-    PORTS: ClassVar[Ports] = SelectorNode.ports(WHAT)
 
 
 class ProgressCheckerSelectorNode(SelectorNode):
     """Choose the progress checker."""
 
     WHAT = "progress_checker"
-    PORTS: ClassVar[Ports] = SelectorNode.ports(WHAT)
