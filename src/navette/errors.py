@@ -64,7 +64,7 @@ class MessageError(InvalidValueError, TypeError, AssertionError):
 
 
 class UnknownNameError(NavetteError, LookupError):
-    """There is nothing of this name; the message lists the known names."""
+    """Unknown name; the message lists the known names."""
 
     @classmethod
     def of(cls, kind: str, name: str, known: list[str]) -> "UnknownNameError":

@@ -230,7 +230,7 @@ def _check_index(reader: ChunkedReader, findings: _Findings) -> None:
             )
     for position in sorted(named.keys() - there.keys()):
         findings.error(
-            "index", f"byte {position}: the index lists a chunk, but there is none"
+            "index", f"byte {position}: the index lists a chunk that does not exist"
         )
 
 

@@ -103,7 +103,7 @@ def read_attachment(file: RecordFile, position: int) -> BagAttachment:
     """Read the head of an attachment.
 
     Raises:
-        FileFormatError: there is none, or it is damaged.
+        FileFormatError: it does not exist, or it is damaged.
     """
     head = file.head(position)
     if head.opcode != Opcode.ATTACHMENT:
@@ -147,7 +147,7 @@ def read_metadata_record(file: RecordFile, position: int) -> MetadataRecord:
     """Read a metadata record.
 
     Raises:
-        FileFormatError: there is none, or it is damaged.
+        FileFormatError: it does not exist, or it is damaged.
     """
     head = file.head(position)
     if head.opcode != Opcode.METADATA:

@@ -155,7 +155,7 @@ def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
 def _read_header(file: RecordFile, index: McapIndex) -> int:
     head = file.head(len(MAGIC))
     if head.opcode != Opcode.HEADER:
-        index.problems.append("there is no header")
+        index.problems.append("the header is missing")
         return head.position
     try:
         header: Header = parse(Header, file.content(head, 1 << 16))

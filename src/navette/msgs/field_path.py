@@ -50,7 +50,7 @@ def parse_field_path(text: str, type_name: str) -> FieldPath:
     """Parse a path and check it against the definition of the message.
 
     Raises:
-        MessageError: the path is malformed, or there is no such field or element.
+        MessageError: the path is malformed, or a field or element is unknown.
     """
     found = FieldType(type_name)
     steps: list[Step] = []

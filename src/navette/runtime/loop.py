@@ -502,7 +502,7 @@ class EventLoop:
             self._ruled.append(group)
 
     def _advance(self, until_ns: int | None) -> bool:
-        """Advance to the next event's time; False if there is nothing to wait for."""
+        """Advance to the next event's time; False without anything to wait for."""
         if self._retry_parked():
             return True
         heap = self._heap

@@ -24,7 +24,7 @@ def checked_transport(name: str, source: str) -> str:
     """Return the name of a transport.
 
     Raises:
-        InvalidValueError: there is no such transport; lists the existing ones.
+        InvalidValueError: unknown transport; lists the existing ones.
     """
     if name not in TRANSPORTS:
         known = ", ".join(TRANSPORTS)

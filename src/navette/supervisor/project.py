@@ -74,7 +74,7 @@ def state_root() -> Path:
     Where that cannot be written, a folder among the temporary files.
 
     Raises:
-        SupervisorError: there is no writable folder.
+        SupervisorError: no writable folder exists.
     """
     given = os.environ.get(STATE_VARIABLE)
     if given:
@@ -91,7 +91,7 @@ def socket_path(state: Path) -> Path:
     Paths of sockets are limited in length.
 
     Raises:
-        SupervisorError: there is no folder for it that only this user can write.
+        SupervisorError: no folder exists for it that only this user can write.
     """
     name = f"{hashlib.sha256(str(state).encode()).hexdigest()[:20]}.sock"
     runtime = os.environ.get("XDG_RUNTIME_DIR")

@@ -261,7 +261,7 @@ _UNREACHED = {
         f"check that the machine is on and that no firewall blocks it; then {_THERE}",
     ),
     PortProbe.UNREACHABLE: (
-        "cannot be reached: there is no route to that address",
+        "cannot be reached: no route to that address",
         "check with ping that this machine is on the same network",
     ),
     PortProbe.UNKNOWN_HOST: (

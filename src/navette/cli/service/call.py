@@ -43,7 +43,7 @@ def call(
 ) -> None:
     """Call a service and print its response.
 
-    Exit code 1: there is no server, or the call failed.
+    Exit code 1: the server does not exist, or the call failed.
     """
     from navette.cli.message_types import interface_class
 

@@ -122,7 +122,7 @@ class ObstacleTracker:
     def place(
         self, now_ns: int, lethal_cost: int, reach_m: float, unseen_reach_m: float
     ) -> Obstacles | None:
-        """Return the obstacles within reach of the robot; None if there is no news.
+        """Return the obstacles within reach of the robot; None if nothing has changed.
 
         Args:
             now_ns: time of the node's clock.

@@ -305,7 +305,7 @@ class Navigator:
         first = not self.report.plan
         plan = self.planner.plan(here, goal, exact_start=exact_start)
         if not plan.outcome.has_path and self._avoided.clear():
-            self._apply_map()  # there is no other path
+            self._apply_map()  # no other path exists
             plan = self.planner.plan(here, goal, exact_start=exact_start)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:

@@ -86,7 +86,7 @@ class PlanMethod(Protocol):
     def plan(self, grid: PlannerGrid, start: Pose2, goal: Goal) -> Any:
         """Return poses (N, 3) x, y, yaw or points (N, 2) from start to goal.
 
-        None or nothing: there is no path.
+        None or nothing: no path exists.
         """
 
 

@@ -54,7 +54,7 @@ class Ros2Loader(Loader):
 
     @abstractmethod
     def child(self, name: str) -> "Ros2Loader | None":
-        """Return the loader of a submodule, None if there is no such submodule."""
+        """Return the loader of a submodule, None for an unknown submodule."""
 
     @abstractmethod
     def contents(self) -> list[str]:

@@ -28,7 +28,7 @@ _SRC_ABOVE = 3  # maximum depth of a package below the workspace's src
 
 
 class PackageNotFoundError(UnknownNameError, KeyError):
-    """There is no package of that name.
+    """A package of that name does not exist.
 
     Also a ``KeyError``, as ament_index_python's exception of the same name.
     """
@@ -55,7 +55,7 @@ def find_package(name: str, start: Path | None = None) -> Package:
 
     Raises:
         InvalidNameError: the name is not valid.
-        PackageNotFoundError: there is no such package; lists the searched folders.
+        PackageNotFoundError: unknown package; lists the searched folders.
     """
     if not is_package_name(name):
         raise InvalidNameError(f"{name!r} is not a valid package name")

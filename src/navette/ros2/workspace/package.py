@@ -92,7 +92,7 @@ class Package:
         """Return one program by name.
 
         Raises:
-            UnknownNameError: there is none of that name; lists the existing ones.
+            UnknownNameError: unknown name; lists the existing ones.
         """
         known = {each.name: each for each in self.executables()}
         if name not in known:

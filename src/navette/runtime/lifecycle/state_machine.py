@@ -107,7 +107,7 @@ class LifecycleStateMachine:
         """Return the transition with that label from the current state.
 
         Raises:
-            RCLError: there is none; lists the available ones.
+            RCLError: unknown transition; lists the available ones.
         """
         for each in self.available_transitions:
             if each.label == label:

@@ -42,7 +42,7 @@ class Participant(LockStepClock):
             self.on_end()
             return
         report = self._own_report(participants)
-        if self._is_news(report):
+        if self._is_new(report):
             self._reported = report
             self.wire.send_report(report)
         if not self.step:
@@ -55,7 +55,7 @@ class Participant(LockStepClock):
         """Return whether the grant is a repetition."""
         return bool(self._coordinator) and grant.step <= self.step
 
-    def _is_news(self, report: StepReport) -> bool:
+    def _is_new(self, report: StepReport) -> bool:
         """Return whether the step or the endpoints changed since the last report."""
         before = self._reported
         return before is None or (

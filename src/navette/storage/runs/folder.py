@@ -23,7 +23,7 @@ def runtime_folder(longest_name: int) -> Path:
         longest_name: bytes of the longest path below it, as a socket's path is limited.
 
     Raises:
-        FileFormatError: there is no such folder, or other users have access to it.
+        FileFormatError: no such folder exists, or other users have access to it.
     """
     problem: FileFormatError | None = None
     for folder in _candidates():

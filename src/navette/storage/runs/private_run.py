@@ -47,7 +47,7 @@ class PrivateRun:
             world: name of the world, for lists of runs.
 
         Raises:
-            NetworkError: there is no private folder for sockets and locks.
+            NetworkError: no private folder exists for sockets and locks.
             InvalidValueError: the name is invalid, or a living run has it.
         """
         runs = _folder_of_runs()

@@ -80,7 +80,7 @@ def converted(image: NDArray[Any], source: str, target: str) -> NDArray[Any]:
     """Convert an image to another encoding; values are scaled between 8 and 16 bits.
 
     Raises:
-        CvBridgeError: there is no conversion between the two encodings.
+        CvBridgeError: no conversion exists between the two encodings.
     """
     if source == target:
         return image

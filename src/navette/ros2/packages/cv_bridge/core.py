@@ -45,7 +45,7 @@ class CvBridge:
         """Return a copy of a message's image.
 
         Raises:
-            CvBridgeError: there is no such conversion, or too little data.
+            CvBridgeError: unknown conversion, or too little data.
         """
         image = _pixels(img_msg)
         if desired_encoding == "passthrough":
@@ -58,7 +58,7 @@ class CvBridge:
         """Return the image of a compressed message; bgr, bgra or mono by default.
 
         Raises:
-            CvBridgeError: there is no such conversion, or the data is not an image.
+            CvBridgeError: unknown conversion, or the data is not an image.
         """
         import cv2
 

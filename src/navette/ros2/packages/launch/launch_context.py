@@ -55,7 +55,7 @@ class LaunchContext:
 
     Args:
         argv: the ``name:=value`` arguments of the command.
-        noninteractive: there is no user at the terminal.
+        noninteractive: no user is at the terminal.
         loop: runs the launch's events and timers.
         runner: starts commands.
 

@@ -33,7 +33,7 @@ class LaunchService:
 
     Args:
         argv: ``name:=value`` arguments.
-        noninteractive: there is no user at the terminal.
+        noninteractive: no user is at the terminal.
         debug: print debug messages.
         loop: runs events and timers (default: a loop on the system clock).
         runner: starts commands (default: a process for each).

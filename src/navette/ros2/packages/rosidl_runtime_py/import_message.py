@@ -12,7 +12,7 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
     """Return the class of a type in ``SLOT_TYPES``, a name, or a NamespacedType.
 
     Raises:
-        UnknownNameError: there is no such interface.
+        UnknownNameError: unknown interface.
     """
     if isinstance(message_type, FieldType):
         name = message_type.base

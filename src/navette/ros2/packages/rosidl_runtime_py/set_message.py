@@ -40,7 +40,7 @@ def set_message_fields(
         publishing.
 
     Raises:
-        UnknownFieldError: there is no such field; lists the existing ones.
+        UnknownFieldError: unknown field; lists the existing ones.
         MessageError: a value has the wrong type.
     """
     setters: list[Setter] = []

@@ -7,7 +7,7 @@ from navette.errors import InvalidNameError, UnknownNameError
 
 
 class UnknownInterfaceError(UnknownNameError, AttributeError):
-    """There is no interface of that name.
+    """An interface of that name does not exist.
 
     Also an ``AttributeError``, which ROS 2's functions raise.
     """
@@ -18,7 +18,7 @@ def get_interface(identifier: str) -> Any:
 
     Raises:
         ValueError: the name has the wrong form.
-        UnknownInterfaceError: there is no such interface; lists those of the package.
+        UnknownInterfaceError: unknown interface; lists those of the package.
     """
     try:
         return msgs.get_interface(identifier)

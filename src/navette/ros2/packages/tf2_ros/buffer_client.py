@@ -52,7 +52,7 @@ class BufferClient(BufferInterface):
         Raises:
             LookupException, ConnectivityException, ExtrapolationException,
             InvalidArgumentException: the server's error.
-            TimeoutException: there is no server, or it did not respond in time.
+            TimeoutException: the server does not exist or did not respond in time.
         """
         return self._request(
             timeout,

@@ -63,7 +63,7 @@ class EnvironmentVariable(Substitution):
             return value
         if self.default_value is None:
             raise SubstitutionFailure(
-                f"environment variable {name!r} is not set, and there is no default"
+                f"environment variable {name!r} is not set and has no default"
             )
         return self.default_value.perform(context)
 
