@@ -191,7 +191,7 @@ class PlannerNode(StageNode):
                 return  # the status may be that of the previous path
             self._drop_step()
             self._navigator.fail(Outcome.METHOD_FAILED)
-            self._publish_changes()
+            self._publish_path_and_status()
         elif msg.message == _STALLED and self._navigator.has_path:
             self._navigator.note_stalled(self._now_ns)
             self.on_timer()
@@ -247,7 +247,7 @@ class PlannerNode(StageNode):
         if robot is None or self._stepping is not None:
             return
         if self._navigator.note(robot, self._now_ns):
-            self._publish_changes()
+            self._publish_path_and_status()
 
     def on_goal_point(self, msg: PointStamped) -> None:
         """Navigate to a point, with any heading, if no missions forward it."""
@@ -284,7 +284,7 @@ class PlannerNode(StageNode):
             goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
         )
         self._report(is_logged=True)
-        self._publish_changes()
+        self._publish_path_and_status()
 
     def on_cancel(
         self, request: Trigger_Request, response: Trigger_Response
@@ -299,7 +299,7 @@ class PlannerNode(StageNode):
         """Cancel the goal and stop the robot; return whether there was one."""
         self._drop_step()
         canceled = self._navigator.cancel()
-        self._publish_changes()
+        self._publish_path_and_status()
         return canceled
 
     def on_cancel_goal(self, msg: Empty) -> None:
@@ -328,7 +328,7 @@ class PlannerNode(StageNode):
             self._drop_step()
             self._navigator.resume(self._now_ns)
             self.on_timer()
-        self._publish_changes()
+        self._publish_path_and_status()
 
     def on_timer(self) -> None:
         """Step the navigator."""
@@ -348,7 +348,7 @@ class PlannerNode(StageNode):
     def _finish_step(self, stepped: Navigator) -> None:
         self._navigator = stepped
         self._drop_step()
-        self._publish_changes()
+        self._publish_path_and_status()
         if self._step_is_due:
             self._step_is_due = False
             self.on_timer()
@@ -458,7 +458,7 @@ class PlannerNode(StageNode):
             self.get_logger().warning(f"goal without a frame: {map_frame!r} is assumed")
         return self._tracker.frame_on_map(frame_id or map_frame)
 
-    def _publish_changes(self) -> None:
+    def _publish_path_and_status(self) -> None:
         poses = self._navigator.take_path()
         if poses is not None:
             message = path_message(poses, self.params.map_frame, self._now_ns)
