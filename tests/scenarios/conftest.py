@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,6 +12,19 @@ from navette.navigation.stack.simulation import Simulation
 from navette.sim import Scene
 
 MakeSimulation = Callable[..., Simulation]
+# A stuck robot is noticed after 4 s instead of 30 s.
+IMPATIENT = """\
+planner:
+  ros__parameters: {progress_timeout_s: 2.0, max_stuck_replans: 1}
+"""
+
+
+@pytest.fixture
+def impatient(tmp_path: Path) -> Path:
+    """Parameters with which the robot is soon stuck."""
+    file = tmp_path / "impatient.yaml"
+    file.write_text(IMPATIENT, encoding="utf-8")
+    return file
 
 
 @pytest.fixture

@@ -29,22 +29,33 @@ SUMMARY_KEYS = {
 }
 
 
+Typed = Callable[..., tuple[int, str, str]]
 Refusal = Callable[..., str]
 
 
 @pytest.fixture
-def refusal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Refusal:
-    """Return the error output of a command, run in this process."""
+def typed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Typed:
+    """Run a command in this process; return exit code, output and errors."""
 
-    def refuse(*arguments: str) -> str:
+    def run(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["navette", *arguments])
         monkeypatch.setattr(app, "end_with", lambda code: None)  # the tests continue
         with pytest.raises(SystemExit) as ended:
             app.main()
-        assert ended.value.code == 2
-        return capsys.readouterr().err
+        printed = capsys.readouterr()
+        return int(ended.value.code or 0), printed.out, printed.err
+
+    return run
+
+
+@pytest.fixture
+def refusal(typed: Typed) -> Refusal:
+    """Return the error output of a command that is refused."""
+
+    def refuse(*arguments: str) -> str:
+        code, _, errors = typed(*arguments)
+        assert code == 2
+        return errors
 
     return refuse
 
@@ -66,13 +77,13 @@ def test_version_and_help() -> None:
 
 
 @pytest.mark.slow
-def test_a_time_limit_before_the_last_goal_is_a_failure() -> None:
-    done = navette(
+def test_a_time_limit_before_the_last_goal_is_a_failure(typed: Typed) -> None:
+    code, printed, _ = typed(
         "sim", "course", "--goal", "6", "-12", "--goal", "12", "0", "--max-time", "2",
         "--headless", "--json",
     )  # fmt: skip
-    assert done.returncode == 1
-    goals = json.loads(done.stdout)["goals"]
+    assert code == 1
+    goals = json.loads(printed)["goals"]
     assert [goal["result"] for goal in goals] == ["unfinished", "unfinished"]
     assert goals[0]["time_s"] == pytest.approx(1.9, abs=0.2)
     assert all(goal["distance_left_m"] > 10 for goal in goals)
@@ -95,10 +106,12 @@ def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
 
 
 @pytest.mark.slow
-def test_a_goal_that_is_not_reached_gives_another_exit_code() -> None:
-    done = navette("sim", "course", "--goal", "100", "0", "--headless", "--json")
-    assert done.returncode == 1
-    (goal,) = json.loads(done.stdout)["goals"]
+def test_a_goal_that_is_not_reached_gives_another_exit_code(typed: Typed) -> None:
+    code, printed, _ = typed(
+        "sim", "course", "--goal", "100", "0", "--headless", "--json"
+    )
+    assert code == 1
+    (goal,) = json.loads(printed)["goals"]
     assert goal["result"] == "goal_outside_map"
 
 
@@ -177,9 +190,7 @@ def test_the_demo_drives_shows_its_address_and_ends_cleanly(end: int) -> None:
 
 
 @pytest.mark.slow
-def test_a_port_that_is_taken_is_named() -> None:
+def test_a_port_that_is_taken_is_named(refusal: Refusal) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
-        done = navette("demo", "--port", port, "--max-time", "1")
-    assert done.returncode == 2
-    assert port in done.stderr
+        assert port in refusal("demo", "--port", port, "--max-time", "1")

@@ -12,19 +12,6 @@ from navette.sim import World
 from .conftest import MakeSimulation
 
 SECOND = 1_000_000_000
-# A stuck robot is noticed after 4 s instead of 30 s.
-IMPATIENT = """\
-planner:
-  ros__parameters: {progress_timeout_s: 2.0, max_stuck_replans: 1}
-"""
-
-
-@pytest.fixture
-def impatient(tmp_path: Path) -> Path:
-    """Parameters with which the robot is soon stuck."""
-    file = tmp_path / "impatient.yaml"
-    file.write_text(IMPATIENT, encoding="utf-8")
-    return file
 
 
 def hold_wheels(simulation: Simulation, until_s: float) -> None:
@@ -32,9 +19,9 @@ def hold_wheels(simulation: Simulation, until_s: float) -> None:
     simulator, clock = simulation.sim.simulator, simulation.context.clock
     drive = simulator.command
 
-    def command(linear: float, angular: float) -> bool:
+    def command(linear: float, angular: float, side: float = 0.0) -> bool:
         held = clock.now_ns < until_s * SECOND
-        return drive(0.0, 0.0) if held else drive(linear, angular)
+        return drive(0.0, 0.0) if held else drive(linear, angular, side)
 
     simulator.command = command  # type: ignore[method-assign]
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -84,10 +85,10 @@ class Operator:
     [("/cmd_vel_teleop", "operator"), ("/cmd_vel", "external")],
 )
 def test_a_takeover_pauses_navigation_which_resumes_and_arrives(
-    simulate: MakeSimulation, topic: str, commander: str
+    simulate: MakeSimulation, impatient: Path, topic: str, commander: str
 ) -> None:
-    operator = Operator(simulate)
-    operator.hold(topic, 0.8, 25.0)  # longer than every timeout of progress
+    operator = Operator(simulate, params_files=(impatient,))
+    operator.hold(topic, 0.8, 6.0)  # longer than every timeout of progress
     assert operator.states == {
         "/commander": commander,
         "/planner/status": "paused",
