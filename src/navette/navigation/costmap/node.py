@@ -15,7 +15,14 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.grids import PlanarScan, grid_to_message, points_to_message
+from navette.navigation.grids import (
+    FREE,
+    PlanarScan,
+    SquareRegion,
+    grid_from_message,
+    grid_to_message,
+    points_to_message,
+)
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
 from navette.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
@@ -62,7 +69,7 @@ class CostmapNode(StageNode):
         self._newest: OccupancyGrid | None = None
         source = CostmapSource(
             grid=lambda: self._newest,
-            clear=lambda region: None,  # no memory: the next scan replaces all of it
+            clear=self._clear,
             frame_on_grid=lambda frame_id: Pose2(0.0, 0.0, 0.0),
             robot_frame=lambda: "",
             footprint=lambda: None,
@@ -100,6 +107,21 @@ class CostmapNode(StageNode):
         if fault != self._fault:
             self._fault = fault
             self.get_logger().error(f"{fault}\nNo costmap: the robot stops.")
+
+    def _clear(self, region: SquareRegion | None) -> None:
+        """Clear the costmap of Nav2's name until the next scan.
+
+        The costmap that stops the robot is not changed: what a beam hits is there.
+        """
+        if self._newest is None:
+            return
+        cells, spec = grid_from_message(self._newest)
+        cleared = cells.copy()
+        cleared[... if region is None else region.mask(spec)] = FREE
+        header = self._newest.header
+        stamp_ns = stamp_to_ns(header.stamp)
+        self._newest = grid_to_message(cleared, spec, header.frame_id, stamp_ns)
+        self.publish(topics.LOCAL_COSTMAP.name, self._newest)
 
     def on_params_changed(self, old: CostmapParams) -> None:
         """Use the new values from the next scan on."""

@@ -54,6 +54,7 @@ from navette.navigation.grids.obstacles import (
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
+from navette.navigation.grids.regions import SquareRegion
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     cell_points,
@@ -69,6 +70,7 @@ from navette.navigation.grids.unseen import (
 )
 
 __all__ = [
+    "SquareRegion",
     "NO_DISCS",
     "MovingDiscs",
     "PlanarScan",

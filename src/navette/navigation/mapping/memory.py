@@ -14,10 +14,10 @@ from navette.navigation.grids import (
     UNKNOWN,
     Changes,
     GridSpec,
+    SquareRegion,
     accumulate,
     cells_in_footprint,
     compare,
-    grid_frame,
     mark_points,
     merge,
     points_of,
@@ -40,26 +40,6 @@ class BodyMotion(NamedTuple):
 
 
 STEADY = BodyMotion()
-
-
-class MapRegion(NamedTuple):
-    """A square (centre and edge in m, map frame), or all of the map but the square."""
-
-    x: float
-    y: float
-    edge: float
-    is_outside: bool = False
-
-    def mask(self, spec: GridSpec) -> NDArray[np.bool_]:
-        """Return (H, W) which cells of a grid have their centres in the region."""
-        frame = grid_frame(spec)
-        u = (np.arange(spec.width) + 0.5) * spec.resolution
-        v = ((np.arange(spec.height) + 0.5) * spec.resolution)[:, None]
-        x = frame.x + frame.cos * u - frame.sin * v
-        y = frame.y + frame.sin * u + frame.cos * v
-        near = self.edge / 2
-        inside = (np.abs(x - self.x) <= near) & (np.abs(y - self.y) <= near)
-        return np.asarray(inside != self.is_outside)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +108,7 @@ class MapMemory:
         self._loaded = cells.copy(), spec
         self.reset()
 
-    def clear(self, region: MapRegion | None = None) -> None:
+    def clear(self, region: SquareRegion | None = None) -> None:
         """Restore the loaded map, or unknown cells, in a region or everywhere."""
         if region is None:
             self.reset()

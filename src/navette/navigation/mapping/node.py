@@ -21,6 +21,7 @@ from navette.navigation.grids import (
     GridSpec,
     HitPoints,
     MovingDiscs,
+    SquareRegion,
     discs_from_message,
     grid_from_message,
     grid_to_message,
@@ -35,14 +36,12 @@ from navette.navigation.mapping.memory import (
     STEADY,
     BodyMotion,
     MapMemory,
-    MapRegion,
     PlacedCostmap,
 )
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
 from navette.navigation.mapping.servers.map_services import MapServices, MapStore
 from navette.navigation.servers.costmap_services import (
-    ClearedRegion,
     CostmapServices,
     CostmapSource,
 )
@@ -284,9 +283,9 @@ class MapMemoryNode(StageNode):
         height, width = known.cells.shape
         self._load(known.cells, GridSpec(known.resolution, width, height, known.origin))
 
-    def _clear(self, region: ClearedRegion | None) -> None:
+    def _clear(self, region: SquareRegion | None) -> None:
         """Clear a region of the map; what is seen now is fused again at once."""
-        self._memory.clear(None if region is None else MapRegion(*region))
+        self._memory.clear(region)
         if self._newest is not None and self._memory.fuse(self._newest):
             self._gate.fused(self._newest, self._now_ns())
         self._publish_map(self._now_ns())

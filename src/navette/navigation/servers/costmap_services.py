@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -16,21 +16,16 @@ from navette.msgs.nav2_msgs.srv import (
     GetCostmap,
 )
 from navette.msgs.nav_msgs.msg import OccupancyGrid
-from navette.navigation.grids import cells_in_footprint, grid_from_message
+from navette.navigation.grids import (
+    SquareRegion,
+    cells_in_footprint,
+    grid_from_message,
+)
 from navette.navigation.grids.costmap_values import costmap_message, costmap_values
 from navette.runtime.node import Node
 from navette.runtime.stage.path_messages import pose_of
 
 _OUTSIDE = -1.0
-
-
-class ClearedRegion(NamedTuple):
-    """A square (centre and edge in m, costmap's frame), or all but the square."""
-
-    x: float
-    y: float
-    edge: float
-    is_outside: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,7 @@ class CostmapSource:
     """
 
     grid: Callable[[], OccupancyGrid | None]
-    clear: Callable[[ClearedRegion | None], None]
+    clear: Callable[[SquareRegion | None], None]
     frame_on_grid: Callable[[str], Pose2 | None]
     robot_frame: Callable[[], str]
     footprint: Callable[[], Footprint | None]
@@ -126,7 +121,7 @@ class CostmapServices:
             f"{self._name}: cleared {'all but ' if outside else ''}{edge:g} m "
             f"around ({at.x:.6g}, {at.y:.6g})"
         )
-        self._source.clear(ClearedRegion(at.x, at.y, edge, outside))
+        self._source.clear(SquareRegion(at.x, at.y, edge, outside))
 
     def _robot(self) -> Pose2 | None:
         robot = self._source.frame_on_grid(self._source.robot_frame())

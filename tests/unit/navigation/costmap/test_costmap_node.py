@@ -5,7 +5,12 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.msgs.builtin_interfaces.msg import Time
-from navette.msgs.nav2_msgs.srv import ClearEntireCostmap, GetCost, GetCostmap
+from navette.msgs.nav2_msgs.srv import (
+    ClearCostmapAroundPose,
+    ClearEntireCostmap,
+    GetCost,
+    GetCostmap,
+)
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Header
@@ -102,9 +107,6 @@ def test_nav2s_local_costmap_is_the_newest_one() -> None:
         graph.publish("/lidar", scan([3.0] * 21))
         graph.run_for(0.1)
         assert local.last == costmaps.last
-        request = ClearEntireCostmap.Request()
-        name = "/local_costmap/clear_entirely_local_costmap"
-        graph.call(ClearEntireCostmap, name, request)
         found = graph.call(
             GetCostmap, "/local_costmap/get_costmap", GetCostmap.Request()
         )
@@ -114,3 +116,32 @@ def test_nav2s_local_costmap_is_the_newest_one() -> None:
         point = GetCost.Request(x=3.0, y=0.0)
         cost = graph.call(GetCost, "/local_costmap/get_cost_local_costmap", point)
         assert cost.cost == 254.0
+
+
+def test_nav2s_local_costmap_is_cleared_until_the_next_scan() -> None:
+    with GraphHarness() as graph:
+        _, costmaps = started(graph)
+        local = graph.collect("/local_costmap/costmap", OccupancyGrid, latched=True)
+        graph.run_for(0.1)
+        graph.publish("/lidar", scan([3.0] * 21))
+        graph.run_for(0.1)
+        whole = np.asarray(local.last.data).reshape(301, 301)
+        near = ClearCostmapAroundPose.Request(reset_distance=0.2)
+        near.pose.header.frame_id = "lidar"
+        near.pose.pose.position.x = 3.0
+        near.pose.pose.orientation.w = 1.0
+        name = "/local_costmap/clear_around_pose_local_costmap"
+        graph.call(ClearCostmapAroundPose, name, near)
+        graph.run_for(0.1)
+        part = np.asarray(local.last.data).reshape(301, 301)
+        assert 0 < (part == 100).sum() < (whole == 100).sum()
+        name = "/local_costmap/clear_entirely_local_costmap"
+        graph.call(ClearEntireCostmap, name, ClearEntireCostmap.Request())
+        found = graph.call(
+            GetCostmap, "/local_costmap/get_costmap", GetCostmap.Request()
+        )
+        assert not np.any(found.map.data)
+        assert costmaps.count == 1  # the robot's own collision check is unaffected
+        graph.publish("/lidar", scan([3.0] * 21))
+        graph.run_for(0.1)
+        assert np.array_equal(np.asarray(local.last.data).reshape(301, 301), whole)

@@ -18,10 +18,14 @@ from navette.msgs.nav2_msgs.srv import (
     GetCostmap,
 )
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.navigation.grids import GridSpec, grid_from_message, grid_to_message
+from navette.navigation.grids import (
+    GridSpec,
+    SquareRegion,
+    grid_from_message,
+    grid_to_message,
+)
 from navette.navigation.grids.costmap_values import costmap_values
 from navette.navigation.mapping import MapMemory, MapMemoryParams
-from navette.navigation.mapping.memory import MapRegion
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter
 from navette.runtime.stage.path_messages import pose_message
@@ -199,7 +203,7 @@ def test_clearing_restores_the_loaded_map(fusion: str) -> None:
     assert memory.spec == spec
     loaded = memory.occupancy()
     assert (loaded == cells).all()
-    memory.clear(MapRegion(1.5, 2.8, 1.0))
+    memory.clear(SquareRegion(1.5, 2.8, 1.0))
     assert (memory.occupancy() == cells).all()
     memory.reset()
     assert (memory.occupancy() == cells).all()
