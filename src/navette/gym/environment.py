@@ -18,7 +18,7 @@ from navette.gym.params import NavigationEnvParams
 from navette.gym.route import Point
 from navette.gym.worlds import NodeParameters, WorldSource
 from navette.sim import Scene, Simulator
-from navette.sim.scene import LidarSensor
+from navette.sim.scene import LidarSensor, MecanumDrive
 from navette.sim.sensors import sensors_of
 
 _OPTIONS = ("start", "goal", "world_seed")
@@ -31,10 +31,12 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         ``ranges`` (beams,): lidar ranges (m) from the sensor's first to its last beam;
         the largest range where nothing is hit, 0 where something is too close.
         ``goal`` (2,): x, y (m) of the goal in the robot's frame.
-        ``velocity`` (2,): forward speed (m/s) and turn rate (rad/s).
+        ``velocity`` (2,): forward speed (m/s) and turn rate (rad/s); (3,) with the
+        speed to the left if the drive moves sideways.
 
     Action (``Box(-1, 1, (2,))``): speed and turn rate as shares of the robot's largest
-    ones; negative speeds are shares of the largest speed in reverse.
+    ones; negative speeds are shares of the largest speed in reverse. A drive that moves
+    sideways has a third component, to the left.
 
     Reward of a step: ``progress_reward`` · metres by which the shortest path to the
     goal shortened − ``time_penalty`` · ``step_s``, + ``goal_reward`` on arrival,
@@ -202,15 +204,16 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         if simulator.params.odometry == "wheel":
             wheels = simulator.wheel_odometry()
             pose, motion = wheels.pose, wheels.motion()
-            velocity = (motion.speed, motion.yaw_rate)
+            velocity = (motion.speed, motion.yaw_rate, motion.side)
         else:
             pose, true = self._position(), simulator.motion()
-            velocity = (true.linear[0], true.angular[2])
+            velocity = (true.linear[0], true.angular[2], true.linear[1])
         goal = self._route.goal
         if self.params.lookahead_m:
             at = self._position()
             goal = self._route.ahead((at.x, at.y), self.params.lookahead_m)
-        return self.observer.observe(self._scan.ranges, pose, goal, velocity)
+        seen = velocity[: self.observer.size]
+        return self.observer.observe(self._scan.ranges, pose, goal, seen)
 
     def _info(self) -> dict[str, Any]:
         contacts = self._world.simulator.contacts.episodes
@@ -268,6 +271,7 @@ def _observer_of(simulator: Simulator, params: NavigationEnvParams) -> Observer:
         raise InvalidValueError("the robot has no laser scanner: nothing to observe")
     link, sensor = next(sensors_of(simulator.compiled.robot.model, LidarSensor))
     limits = simulator.params
+    moves_sideways = isinstance(simulator.compiled.robot.drive, MecanumDrive)
     if params.beams > sensor.samples:
         raise ParameterError(
             f"parameter 'beams': {params.beams} is not allowed; the lidar has "
@@ -282,6 +286,7 @@ def _observer_of(simulator: Simulator, params: NavigationEnvParams) -> Observer:
         forward_mps=limits.max_speed_mps,
         reverse_mps=limits.max_reverse_speed_mps,
         turn_radps=limits.max_yaw_rate_radps,
+        side_mps=limits.max_side_speed_mps if moves_sideways else 0.0,
     )
 
 

@@ -30,6 +30,8 @@ class Observer:
         range_max_m: range of a beam that hits nothing.
         base_T_scan: pose of the lidar.
         forward_mps, reverse_mps, turn_radps: largest commands.
+        side_mps: largest command to the side; 0 = the drive does not move sideways,
+            and velocity and action have two components instead of three.
     """
 
     beams: int
@@ -40,11 +42,28 @@ class Observer:
     forward_mps: float
     reverse_mps: float
     turn_radps: float
+    side_mps: float = 0.0
+
+    @property
+    def _least(self) -> NDArray[np.float64]:
+        return -np.array([self.reverse_mps, self.turn_radps, self.side_mps])[
+            : self.size
+        ]
+
+    @property
+    def _most(self) -> NDArray[np.float64]:
+        most = np.array([self.forward_mps, self.turn_radps, self.side_mps])
+        return most[: self.size]
+
+    @property
+    def size(self) -> int:
+        """Number of components of velocity and action."""
+        return 3 if self.side_mps > 0 else 2
 
     def observation_space(self) -> spaces.Space[Observation]:
         """Space of :meth:`observe`."""
-        low = np.array([-self.reverse_mps, -self.turn_radps], np.float32) * _OVERSHOOT
-        high = np.array([self.forward_mps, self.turn_radps], np.float32) * _OVERSHOOT
+        low = (self._least * _OVERSHOOT).astype(np.float32)
+        high = (self._most * _OVERSHOOT).astype(np.float32)
         return spaces.Dict(  # type: ignore[return-value] # of any values
             {
                 "ranges": spaces.Box(
@@ -56,15 +75,15 @@ class Observer:
         )
 
     def action_space(self) -> spaces.Space[NDArray[np.float32]]:
-        """Space of actions: shares of the largest speed and turn rate."""
-        return spaces.Box(-1.0, 1.0, (2,), np.float32)
+        """Space of actions: shares of the largest speeds and turn rate."""
+        return spaces.Box(-1.0, 1.0, (self.size,), np.float32)
 
     def observe(
         self,
         ranges: NDArray[np.floating],
         map_T_base: Pose2,
         goal_map: tuple[float, float],
-        velocity: tuple[float, float],
+        velocity: tuple[float, ...],
     ) -> Observation:
         """Return the observation.
 
@@ -73,17 +92,17 @@ class Observer:
                 :meth:`ranges_to`.
             map_T_base: the robot's pose.
             goal_map: (x, y), m.
-            velocity: forward speed (m/s) and turn rate (rad/s).
+            velocity: forward speed (m/s), turn rate (rad/s) and, if the drive moves
+                sideways, speed to the left (m/s).
         """
         dx, dy = goal_map[0] - map_T_base.x, goal_map[1] - map_T_base.y
         c, s = math.cos(map_T_base.yaw), math.sin(map_T_base.yaw)
         goal = np.array([c * dx + s * dy, c * dy - s * dx])
-        limit = np.array([self.forward_mps, self.turn_radps]) * _OVERSHOOT
-        least = np.array([-self.reverse_mps, -self.turn_radps]) * _OVERSHOOT
+        least, most = self._least * _OVERSHOOT, self._most * _OVERSHOOT
         return {
             "ranges": self.reduce(ranges),
             "goal": np.clip(goal, -FARTHEST_GOAL_M, FARTHEST_GOAL_M).astype(np.float32),
-            "velocity": np.clip(velocity, least, limit).astype(np.float32),
+            "velocity": np.clip(velocity, least, most).astype(np.float32),
         }
 
     def ranges_to(
@@ -123,19 +142,19 @@ class Observer:
         )
         return limited
 
-    def command(self, action: NDArray[np.floating]) -> tuple[float, float]:
-        """Return speed (m/s) and turn rate (rad/s) of an action in [−1, 1]².
+    def command(self, action: NDArray[np.floating]) -> tuple[float, ...]:
+        """Return speed (m/s), turn rate (rad/s) and, if possible, speed to the left.
+
+        Args:
+            action: (2,) or (3,) shares of the largest ones, in [−1, 1].
 
         Raises:
-            InvalidValueError: not two finite numbers.
+            InvalidValueError: another shape, or not finite.
         """
         values = np.asarray(action, np.float64)
-        if values.shape != (2,) or not np.isfinite(values).all():
+        if values.shape != (self.size,) or not np.isfinite(values).all():
             raise InvalidValueError(
-                f"action {action!r}: two finite numbers in [-1, 1] required"
+                f"action {action!r}: {self.size} finite numbers in [-1, 1] required"
             )
-        v, w = np.clip(values, -1.0, 1.0).tolist()
-        return (
-            v * (self.forward_mps if v > 0 else self.reverse_mps),
-            w * self.turn_radps,
-        )
+        share = np.clip(values, -1.0, 1.0)
+        return tuple((np.where(share > 0, self._most, -self._least) * share).tolist())

@@ -227,8 +227,22 @@ def test_other_drives_reach_a_goal_ahead(robot: str) -> None:
     env.reset(options={"start": (0.0, 0.0, 0.0), "goal": (3.0, 0.0)})
     ended: list[bool] = [False]
     while not any(ended):
-        _, _, *ended, info = env.step(0.5 * FORWARD)
+        action = np.zeros(env.observer.size, np.float32)
+        action[0] = 0.5
+        _, _, *ended, info = env.step(action)
     assert info["outcome"] == "reached"
+
+
+def test_a_drive_that_moves_sideways_has_a_third_component() -> None:
+    env = make("empty", robot="mecanum")
+    env.reset(options={"start": (0, 0, 0.0), "goal": (0, 5)})
+    for _ in range(10):
+        observation, *_, info = env.step(np.array([0.0, 0.0, 1.0], np.float32))
+    assert observation["velocity"].shape == (3,)
+    assert observation["velocity"][2] > 0.3
+    assert observation in env.observation_space
+    assert info["pose"][1] > 0.2
+    assert abs(info["pose"][0]) < 0.1
 
 
 def test_pictures_show_the_episode() -> None:
@@ -289,7 +303,7 @@ def test_impossible_options_are_named(options: dict[str, Any], text: str) -> Non
 def test_an_action_of_another_shape_is_named() -> None:
     env = make()
     env.reset(seed=0)
-    with pytest.raises(InvalidValueError, match="two finite numbers"):
+    with pytest.raises(InvalidValueError, match="2 finite numbers"):
         env.step(np.array([np.nan, 0.0], np.float32))
 
 
