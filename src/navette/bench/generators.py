@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.bench.shortest import grid_between, shortest_length
 from navette.errors import UnknownNameError
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec, distance_field
-from navette.navigation.planning.astar import AStar
-from navette.navigation.planning.traversal import LETHAL, STRAIGHT
+from navette.navigation.grids import GridSpec
 from navette.sim import Scene, World
 
 CORRIDOR_M = 0.75
@@ -22,7 +21,6 @@ CORRIDOR_M = 0.75
 _CELL_M = 0.15
 _POST_M = 0.075
 _ATTEMPTS = 200
-_PLAN_CELL_M = 0.05
 
 Filled = NDArray[np.bool_]
 
@@ -77,18 +75,9 @@ class _Plot:
 
     def shortest(self) -> float | None:
         """Return the length of the shortest path of a disc, or None."""
-        width, height = np.ceil((np.array(self.high) - self.low) / _PLAN_CELL_M).astype(
-            int
-        )
-        spec = GridSpec(_PLAN_CELL_M, int(width), int(height), Pose2(*self.low, 0.0))
-        away = distance_field(self._lethal(spec), _PLAN_CELL_M, 1.0)
-        cost = np.where(away < CORRIDOR_M / 2, LETHAL, 0).astype(np.uint8)
-        start = spec.cell_of(self.start.x, self.start.y)
-        goal = spec.cell_of(*self.goal)
-        if cost[start] or cost[goal]:
-            return None
-        found = AStar().search(cost, start, goal)
-        return None if found is None else found[1] / STRAIGHT * _PLAN_CELL_M
+        spec = grid_between(self.low, self.high)
+        points = ((self.start.x, self.start.y), self.goal)
+        return shortest_length(self._lethal(spec), spec, points, CORRIDOR_M / 2)
 
     def _lethal(self, spec: GridSpec) -> NDArray[np.uint8]:
         columns, rows = np.arange(spec.width), np.arange(spec.height)

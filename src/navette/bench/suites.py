@@ -9,9 +9,13 @@ from navette.bench.barn import barn_trials
 from navette.bench.dynabarn import FILE as DYNABARN_FILE
 from navette.bench.dynabarn import dynabarn_trial, dynabarn_trials
 from navette.bench.generators import GENERATORS, generate
+from navette.bench.shortest import shortest_around
 from navette.bench.trial import Trial
 from navette.errors import InvalidValueError, UnknownNameError
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.scene import resolve_scene
+from navette.sim import Simulator, footprint_of
 
 SUITES = ("barn", "dynabarn", "course", "random", *GENERATORS, moving_worlds.KIND)
 """``barn`` and ``dynabarn`` require their data sets; ``random`` is every generator of
@@ -85,7 +89,7 @@ def _course_trials() -> list[Trial]:
         Trial(
             suite="course",
             name=name,
-            world="arena",
+            world="course",
             robot="course",
             start=Pose2(x, y, math.radians(degrees)),
             goals=(goal,),
@@ -96,12 +100,29 @@ def _course_trials() -> list[Trial]:
     whole = Trial(
         suite="course",
         name="seven-goals",
-        world="arena",
+        world="course",
         robot="course",
         goals=_COURSE,
         limit_s=_COURSE_LIMIT_S,
     )
-    return [*runs, whole]
+    return _with_shortest([*runs, whole])
+
+
+def _with_shortest(trials: list[Trial]) -> list[Trial]:
+    """Return trials in one world, with the lengths of their shortest paths."""
+    resolved = resolve_scene(RunOptions(world=trials[0].world, robot=trials[0].robot))
+    simulator = Simulator(resolved.scene)
+    outlines = simulator.outlines()
+    model = resolved.scene.robot
+    assert model is not None, "a resolved scene has a robot"
+    radius_m = Footprint(footprint_of(model)).inscribed_radius
+    x, y, _ = simulator.pose().translation
+    found = []
+    for trial in trials:
+        start = (x, y) if trial.start is None else (trial.start.x, trial.start.y)
+        length = shortest_around(outlines, [start, *trial.goals], radius_m)
+        found.append(replace(trial, shortest_m=length))
+    return found
 
 
 def _generated(suite: str, kind: str, seed: int) -> Trial:
