@@ -95,7 +95,8 @@ def _trials(options: TrialOptions) -> list["Trial"]:
 
     worlds = _numbers("--worlds", options.worlds)
     robot = None if options.robot is None else absolute_place(options.robot)
-    base = suite_trials(options.suite, data=options.data, worlds=worlds, robot=robot)
+    data = None if options.data is None else options.data.resolve()
+    base = suite_trials(options.suite, data=data, worlds=worlds, robot=robot)
     if options.trials is not None and options.seeds:
         raise InvalidValueError("--trials N and --seeds: expected one of them")
     seeds = tuple(range(options.trials or 0)) or _numbers("--seeds", options.seeds)
