@@ -16,6 +16,7 @@ _LEAST_POINTS_OF_CIRCLE = 5
 _CIRCLE_ERROR_M = 0.04
 # Neighbouring returns are farther apart at a distance: metres per metre.
 _GAP_GROWTH = 0.015
+_FIT_STEPS, _FIT_DAMPING = 5, 0.02
 # The mean of the returns of a half circle lies this share of the radius before the
 # centre.
 _MEAN_BEFORE_CENTRE = 0.785
@@ -124,6 +125,28 @@ def fit_disc(
                 return float(middle[0] + a), float(middle[1] + b), radius, True
     radius = max(_LEAST_RADIUS_M, min(largest_m, extent(points) / 2))
     return behind_returns(middle, sensor, radius)
+
+
+def fit_centre(
+    points: Points, start: tuple[float, float], radius_m: float
+) -> tuple[float, float, float, bool]:
+    """Return the disc of a known radius on whose circle the returns lie.
+
+    Gauss-Newton steps from ``start``, damped: where a hidden obstacle shows a short arc
+    only, the centre stays near the start in the direction that the arc leaves open. The
+    last value is whether the returns lie on the circle.
+    """
+    centre = np.array(start)
+    for _ in range(_FIT_STEPS):
+        arms = points - centre
+        lengths = np.maximum(np.hypot(arms[:, 0], arms[:, 1]), 1e-6)
+        units = arms / lengths[:, None]
+        error = lengths - radius_m
+        normal = units.T @ units + _FIT_DAMPING * len(points) * np.eye(2)
+        centre = centre + np.linalg.solve(normal, units.T @ error)
+    error = np.hypot(*(points - centre).T) - radius_m
+    fits = float(error @ error) <= len(points) * _CIRCLE_ERROR_M**2
+    return float(centre[0]), float(centre[1]), radius_m, fits
 
 
 def behind_returns(

@@ -12,6 +12,7 @@ from navette.navigation.tracking.clusters import (
     Cluster,
     behind_returns,
     extent,
+    fit_centre,
     fit_disc,
     segment,
 )
@@ -23,6 +24,8 @@ from navette.navigation.tracking.tracks import Track, TrackedObstacle, associate
 _AGES_S = (0.25, 0.75)
 _LEAST_RETURNS = 3
 _LEAST_CHANGED = 3
+# Relative difference up to which two radii are those of the same obstacle.
+_SAME_RADIUS = 0.3
 # Beams past the predicted centre that show that an obstacle is not there any more.
 _PASSED = 3
 
@@ -66,6 +69,8 @@ class MovingObstacles:
         self._past.append(placed)
         if not self._tracks and not changed.any() and not len(vanished):
             return []
+        for track in self._tracks:
+            track.predict(stamp_ns, self.params.acceleration_mps2)
         clusters = self._clusters(placed, away, changed, vanished)
         self._update(placed, clusters)
         return [track.estimate() for track in self._tracks if track.is_moving]
@@ -171,9 +176,14 @@ class MovingObstacles:
         sensor = (placed.x, placed.y)
         disc = fit_disc(points, sensor, self.params.max_size_m / 2)
         track = self._nearest_track(disc[0], disc[1])
-        if track is not None and disc[2] < 0.7 * track.radius_m:
-            # Partly hidden, or too few returns for the circle.
+        if track is not None and not (
+            disc[3] and abs(disc[2] - track.radius_m) <= _SAME_RADIUS * track.radius_m
+        ):
+            # Partly hidden, or too few returns for a circle of their own.
             disc = behind_returns(points.mean(axis=0), sensor, track.radius_m)
+            if track.is_round:
+                known = fit_centre(points, (track.x, track.y), track.radius_m)
+                disc = known if known[3] else disc
         return Cluster(*disc, changed)
 
     def _nearest_track(self, x: float, y: float) -> Track | None:
@@ -193,8 +203,6 @@ class MovingObstacles:
 
     def _update(self, placed: PlacedScan, clusters: list[Cluster]) -> None:
         params = self.params
-        for track in self._tracks:
-            track.predict(placed.stamp_ns, params.acceleration_mps2)
         matched = associate(self._tracks, clusters, params.gate_m)
         for i, track in enumerate(self._tracks):
             if i in matched:
