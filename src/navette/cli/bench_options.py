@@ -90,7 +90,8 @@ class BenchOptions:
             metavar="BASELINE [MINE]",
             help="Compare two: baseline (the robot's own methods), mine (those of the"
             " options), settings as controller=mppi,control.cruise_speed_mps=1.5, or a"
-            " file of --results. Exit with 1 if mine is significantly worse.",
+            " file of --results. Exit with 1 if success or score of mine are"
+            " significantly worse.",
         ),
     ] = None
     report: Annotated[

@@ -1,0 +1,67 @@
+"""``navette bench``: comparison of results in files, exit codes."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from navette.bench.trial import TrialResult
+from navette.cli.app import app
+from navette.errors import InvalidValueError
+
+GOOD = TrialResult(
+    suite="maze", name="maze-0", seed=0, outcome="reached", time_s=10.0, score=0.5,
+    contacts=0, path_m=10.0, shortest_m=10.0, min_clearance_m=0.2, lost_s={}, jerk=1.0,
+    wall_s=1.0, sim_s=10.0,
+)  # fmt: skip
+
+
+def written(path: Path, results: list[TrialResult]) -> str:
+    rows = [{"key": str(i), **dataclasses.asdict(r)} for i, r in enumerate(results)]
+    text = "".join(json.dumps(row) + "\n" for row in rows)
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def compared(*words: str) -> tuple[int, str]:
+    options = [word for each in words for word in ("--compare", each)]
+    ended = CliRunner().invoke(app, ["bench", "maze", "--worlds", "0", *options])
+    if ended.exception is not None and not isinstance(ended.exception, SystemExit):
+        raise ended.exception
+    return ended.exit_code, ended.stdout
+
+
+def test_files_of_results_are_compared_without_a_drive(tmp_path: Path) -> None:
+    good = [dataclasses.replace(GOOD, seed=seed) for seed in range(12)]
+    bad = [
+        dataclasses.replace(r, outcome="stuck", score=0.0) if r.seed > 3 else r
+        for r in good
+    ]
+    a, b = written(tmp_path / "a.jsonl", good), written(tmp_path / "b.jsonl", bad)
+    code, text = compared(a, b)
+    assert code == 1
+    assert "success -0.6667" in text
+    assert "12 pairs, worse" in text
+    assert compared(b, a)[0] == 0
+    assert compared(a, a)[0] == 0
+    report = tmp_path / "report.html"
+    ended = CliRunner().invoke(
+        app,
+        [*("bench", "maze", "--compare", a, "--compare", b), "--report", str(report),
+         "--json"],
+    )  # fmt: skip
+    values = json.loads(ended.stdout)
+    assert values["success"] == pytest.approx(1 / 3)
+    assert values["baseline"]["success"] == 1.0
+    assert "stuck" in report.read_text(encoding="utf-8")
+
+
+def test_files_without_a_common_trial_are_an_error(tmp_path: Path) -> None:
+    a = written(tmp_path / "a.jsonl", [GOOD])
+    b = written(tmp_path / "b.jsonl", [dataclasses.replace(GOOD, seed=7)])
+    with pytest.raises(InvalidValueError, match="no trial in common"):
+        compared(a, b)
+    with pytest.raises(InvalidValueError, match="expected BASELINE, or BASELINE MINE"):
+        compared(a, b, a)
