@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning.dijkstra import UNREACHED, cost_to_go
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
@@ -39,18 +40,23 @@ def nearest_reachable(
 def cells_within(
     grid: PlanningGrid, xy: tuple[float, float], radius_m: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return :func:`cells_near` of a planning grid."""
+    return cells_near(grid.spec, xy, radius_m)
+
+
+def cells_near(
+    spec: GridSpec, xy: tuple[float, float], radius_m: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return cells (N, 2) with centres within the radius, and distances (N,), metres.
 
     The point's own cell is always included.
     """
-    row, column = grid.spec.cell_of(*xy)
-    reach = math.ceil(radius_m / grid.spec.resolution)
-    rows = np.arange(max(0, row - reach), min(grid.spec.height, row + reach + 1))
-    columns = np.arange(
-        max(0, column - reach), min(grid.spec.width, column + reach + 1)
-    )
+    row, column = spec.cell_of(*xy)
+    reach = math.ceil(radius_m / spec.resolution)
+    rows = np.arange(max(0, row - reach), min(spec.height, row + reach + 1))
+    columns = np.arange(max(0, column - reach), min(spec.width, column + reach + 1))
     cells = np.stack(np.meshgrid(rows, columns, indexing="ij"), -1).reshape(-1, 2)
-    gaps = grid.spec.centers_of(cells) - xy
+    gaps = spec.centers_of(cells) - xy
     away = np.hypot(gaps[:, 0], gaps[:, 1])
     near = (away <= radius_m) | ((cells == (row, column)).all(axis=1))
     return cells[near], away[near]

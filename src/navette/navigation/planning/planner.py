@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import NO_DISCS, GridSpec, Layer, StartArea, unseen_mask
-from navette.navigation.planning.close_look import close_map
+from navette.navigation.planning.body_space import reachable
+from navette.navigation.planning.close_look import CloseMap, close_map
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
-from navette.navigation.planning.goals import nearest_reachable
+from navette.navigation.planning.goals import cells_near, nearest_reachable
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.moving_cost import with_moving
 from navette.navigation.planning.outcome import Outcome
@@ -48,6 +49,8 @@ _EXACT_START_RAD = 0.1
 _ROOMY_END = 2.0
 # Least difference between the length of a bend and the turn times the least radius.
 _STEERABLE_M = 0.02
+# Searches on the map's own cells, and through gaps, get this part of the budget.
+_QUICK_SHARE = 4
 
 
 @dataclass(frozen=True)
@@ -140,6 +143,7 @@ class Planner:
             start, Target(goal.x, goal.y, None, reach), None
         )
         nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
+        reachable(np.zeros(spec.shape, np.bool_), spec, self.footprint, start)
 
     @property
     def body(self) -> BodyShape:
@@ -198,43 +202,83 @@ class Planner:
         return self._planned(goal, poses, margin, 0)
 
     def _plan_or_squeeze(self, start: Pose2, goal: Goal) -> Plan:
-        plan = self._plan_with(self.params.clearance_margin_m, start, goal)
-        tight = self.params.tight_margin_m
+        quick = self.params.max_expansions // _QUICK_SHARE
+        plan = self._plan_with(
+            self.params.clearance_margin_m, start, goal, max_expansions=quick
+        )
         direct = math.dist((start.x, start.y), (goal.x, goal.y))
-        if tight >= self.params.clearance_margin_m or (
-            plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M
-        ):
+        if plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M:
             return plan
-        squeezed = self._plan_with(tight, start, goal)
-        worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
-        plan = squeezed if squeezed.outcome.has_path and worth else plan
+        tight = self._tight_m
+        if tight < self.params.clearance_margin_m:
+            squeezed = self._plan_with(tight, start, goal, max_expansions=quick)
+            worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
+            plan = squeezed if squeezed.outcome.has_path and worth else plan
         return plan if plan.outcome.has_path else self._look_closer(start, goal, plan)
 
+    @property
+    def _tight_m(self) -> float:
+        return min(self.params.tight_margin_m, self.params.clearance_margin_m)
+
     def _look_closer(self, start: Pose2, goal: Goal, plan: Plan) -> Plan:
-        """Plan on finer cells where those of the map have no path."""
+        """Plan on finer cells where those of the map have no path.
+
+        Returns ``plan``, which has none, with its reason if that is certain now.
+        """
         assert self._map is not None, "set_map comes first"
         occupancy, spec = self._map
+        ends = np.array([(start.x, start.y), (goal.x, goal.y)])
+        reach_m = 2 * self.body.circumscribed_m
         closer = close_map(
-            occupancy,
-            spec,
-            self._hits,
-            self.params.lethal_cost,
-            np.array([(start.x, start.y), (goal.x, goal.y)]),
-            2 * self.body.circumscribed_m,
+            occupancy, spec, self._hits, self.params.lethal_cost, ends, reach_m
         )
+        why = self._why_impossible(closer, start, goal)
+        if why is not None:
+            known = plan.outcome in (Outcome.START_BLOCKED, Outcome.GOAL_BLOCKED)
+            return plan if known else replace(plan, outcome=why)
         slack = closer.spec.resolution
-        for body in (
-            BodyShape.of(self.footprint, slack).through_gaps(slack),
-            BodyShape.of(self.footprint, slack).loose(slack),
-        ):
-            other = Planner(self.params)
-            other.router = GridRouter(self.params, centres=True)
-            other.set_map(closer.occupancy, closer.spec, self._hits)
-            other._body = body
-            found = other._plan_with(self.params.tight_margin_m, start, goal)
-            if found.outcome.has_path:
-                return found
-        return found
+        body = BodyShape.of(self.footprint, slack)
+        quick = self.params.max_expansions // _QUICK_SHARE
+        found = self._on_close_map(closer, body.through_gaps(slack))._plan_with(
+            self._tight_m, start, goal, max_expansions=quick
+        )
+        if found.outcome.has_path:
+            return found
+        # Only what an exact pose on every cell confirms is worth the long search.
+        if self._why_impossible(closer, start, goal, 0.0) is None:
+            found = self._on_close_map(closer, body.loose(slack))._plan_with(
+                self._tight_m, start, goal, max_expansions=quick
+            )
+        if found.outcome is not Outcome.SEARCH_LIMIT:
+            return found
+        why = self._why_impossible(closer, start, goal, self._tight_m)
+        return found if why is None else replace(found, outcome=Outcome.NO_PATH)
+
+    def _on_close_map(self, closer: CloseMap, body: BodyShape) -> "Planner":
+        other = Planner(self.params)
+        other.router = GridRouter(self.params, centres=True)
+        other.set_map(closer.occupancy, closer.spec, self._hits)
+        other.put_down_at = self.put_down_at
+        other._body = body
+        return other
+
+    def _why_impossible(
+        self,
+        closer: CloseMap,
+        start: Pose2,
+        goal: Goal,
+        margin_m: float | None = None,
+    ) -> Outcome | None:
+        """Return why no motion of the body leads to the goal; None if one may."""
+        lethal = closer.occupancy >= self.params.lethal_cost
+        fits, reached = reachable(
+            lethal, closer.spec, self.footprint, start, margin_m=margin_m
+        )
+        cells, _ = cells_near(closer.spec, (goal.x, goal.y), self._reach_m)
+        there = tuple(cells.T)
+        if reached[there].any():
+            return None
+        return Outcome.NO_PATH if fits[there].any() else Outcome.GOAL_BLOCKED
 
     def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
         """Plan with the grid search alone and the full margin; None without a path.
@@ -273,7 +317,9 @@ class Planner:
             return Outcome.START_OUTSIDE_MAP
         return None
 
-    def _plan_with(self, margin_m: float, start: Pose2, goal: Goal) -> Plan:
+    def _plan_with(
+        self, margin_m: float, start: Pose2, goal: Goal, *, max_expansions: int
+    ) -> Plan:
         grid = self._opened(margin_m, start)
         route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
         if route is None:
@@ -286,7 +332,11 @@ class Planner:
         if fitting is not None and not self._ends_cramped(grid, fitting):
             return self._planned(goal, fitting, margin_m, 0)
         detour = DetourPlanner(
-            grid, self.body, self.params, self.router, self._unseen(start)
+            grid,
+            self.body,
+            replace(self.params, max_expansions=max_expansions),
+            self.router,
+            self._unseen(start),
         ).plan(start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route)
         poses = fitting if detour.poses is None else detour.poses
         if poses is None:

@@ -1,0 +1,137 @@
+"""Whether any motion of the body connects two places: a proof that there is no path.
+
+The configuration space of the body (Lozano-Pérez 1983) as one bit per heading and cell:
+every obstacle closes the poses at which the body covers it, and a flood through the
+open poses finds all that can be reached. A search that ends without a path proves
+nothing when its budget ends; a flood that does not reach the goal does.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Footprint, Pose2
+from navette.navigation.grids import GridSpec, make_outline, signed_distance
+from navette.storage.kernels import kernel
+
+_HEADINGS = 64
+_WITHIN = 5  # headings tried within one bin, its limits included
+
+Masks = NDArray[np.uint64]
+
+
+def reachable(
+    lethal: NDArray[np.bool_],
+    spec: GridSpec,
+    footprint: Footprint,
+    start: Pose2,
+    *,
+    margin_m: float | None = None,
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return in which cells (H, W) the body fits, and which of them it can reach.
+
+    Without a margin a cell is closed only if the body fits nowhere in it: what is not
+    reached is certain. With a margin the body is placed at the cell's centre with the
+    middle heading of each bin: what is reached is certain.
+
+    Args:
+        lethal: (H, W) obstacles.
+        spec: their geometry in the map frame.
+        footprint: outline of the body.
+        start: pose of the body in the map, always open.
+        margin_m: clearance that the body keeps, or None.
+    """
+    outline = make_outline(footprint)
+    reach = int(np.ceil((outline.radius_m + (margin_m or 0.0)) / spec.resolution))
+    stamp = np.zeros((2 * reach + 1, 2 * reach + 1), np.uint64)
+    if margin_m is None:
+        spread, least = np.pi / _HEADINGS, -spec.resolution * np.sqrt(0.5)
+    else:
+        spread, least = 0.0, margin_m
+    _fill_stamp(
+        stamp, outline.vertices, spec.resolution, spec.origin.yaw, spread, least
+    )
+    closed = np.zeros((spec.height + 2 * reach, spec.width + 2 * reach), np.uint64)
+    _close(closed, np.argwhere(lethal), np.ascontiguousarray(stamp[::-1, ::-1]))
+    inner = slice(reach, -reach or None)
+    open_ = np.ascontiguousarray(~closed[inner, inner])
+    row, column = spec.cell_of(start.x, start.y)
+    open_[row, column] = ~np.uint64(0)
+    reached = np.zeros(spec.shape, np.uint64)
+    _flood(open_, reached, row, column, np.empty(4 * lethal.size + 16, np.int64))
+    return open_ != 0, reached != 0
+
+
+@kernel
+def _fill_stamp(
+    stamp: Masks,
+    vertices: NDArray[np.float64],
+    size: float,
+    grid_yaw: float,
+    spread: float,
+    least: float,
+) -> None:
+    """Set the bits of the headings at which the body covers each offset in cells."""
+    edge = stamp.shape[0]
+    for k in range(_HEADINGS):
+        bit = np.uint64(1) << np.uint64(k)
+        for i in range(edge):
+            for j in range(edge):
+                x, y = (j - edge // 2) * size, (i - edge // 2) * size
+                covered = True
+                for part in range(_WITHIN):
+                    share = 2.0 * part / (_WITHIN - 1) - 1.0
+                    yaw = 2 * np.pi * k / _HEADINGS - grid_yaw + share * spread
+                    c, s = np.cos(yaw), np.sin(yaw)
+                    away = signed_distance(vertices, c * x + s * y, c * y - s * x)
+                    if away >= least:
+                        covered = False
+                        break
+                if covered:
+                    stamp[i, j] |= bit
+
+
+@kernel
+def _close(closed: Masks, cells: NDArray[np.int64], stamp: Masks) -> None:
+    edge = stamp.shape[0]
+    for n in range(cells.shape[0]):
+        row, column = cells[n, 0], cells[n, 1]
+        for i in range(edge):
+            line = closed[row + i, column : column + edge]
+            for j in range(edge):
+                line[j] |= stamp[i, j]
+
+
+@kernel
+def _flood(open_: Masks, reached: Masks, row: int, column: int, stack: Any) -> None:
+    """Reach neighbouring cells with the same heading, and neighbouring headings."""
+    height, width = open_.shape
+    reached[row, column] = open_[row, column]
+    stack[0], count = row * width + column, 1
+    while count > 0:
+        count -= 1
+        row, column = stack[count] // width, stack[count] % width
+        here = reached[row, column]
+        for i in range(max(0, row - 1), min(height, row + 2)):
+            for j in range(max(0, column - 1), min(width, column + 2)):
+                new = here & open_[i, j] & ~reached[i, j]
+                if new == 0:
+                    continue
+                reached[i, j] = _turned(reached[i, j] | new, open_[i, j])
+                if count < stack.size:
+                    stack[count] = i * width + j
+                    count += 1
+
+
+@kernel
+def _turned(mask: np.uint64, open_: np.uint64) -> np.uint64:
+    """Return the headings that turning in place reaches from those of a mask."""
+    one, last = np.uint64(1), np.uint64(_HEADINGS - 1)
+    while True:
+        left = (mask << one) | (mask >> last)
+        right = (mask >> one) | (mask << last)
+        more = (mask | left | right) & open_
+        if more == mask:
+            return mask
+        mask = more
