@@ -70,6 +70,7 @@ class ScanCostmap:
                 range_min=scan.range_min,
                 range_max=reach,
                 margins=self._margins(scan, directions),
+                fills=True,
             )
         return inflate(cost, self._table, raise_unknown=False)
 

@@ -60,6 +60,7 @@ from navette.navigation.grids.sub_cells import (
     cell_points,
     mark_points,
     point_radius,
+    points_by_cell,
     points_of,
 )
 from navette.navigation.grids.unseen import (
@@ -127,6 +128,7 @@ __all__ = [
     "mark_points",
     "cell_points",
     "points_of",
+    "points_by_cell",
     "point_radius",
     "grid_to_message",
     "grid_from_message",

@@ -18,6 +18,9 @@ from navette.navigation.grids.spec import (
 )
 from navette.storage.kernels import kernel
 
+# Change of range per distance between neighbouring beams on a wall met at 10°.
+_STEEPEST = 1.0 / math.tan(math.radians(10.0))
+
 
 class _Beams(NamedTuple):
     """One scan for the kernel: (x, y) of the sensor, arrays per beam, limits."""
@@ -48,12 +51,14 @@ def trace_beams(
     range_min: float,
     range_max: float,
     margins: NDArray[np.float32] | None = None,
+    fills: bool = False,
 ) -> int:
     """Write one scan into ``cost``: free up to each hit, lethal at the hit.
 
     Cells on the line from the sensor's cell to the last cell (Bresenham 1965) become
-    free, cells that contain a hit lethal; nothing is written beyond a hit, and a hit is
-    never freed by another beam of the same scan. Readings:
+    free, with ``fills`` also those between neighbouring beams that end on one surface;
+    cells that contain a hit become lethal. Nothing is written beyond a hit, and a hit
+    is never freed by another beam of the same scan. Readings:
 
     - range_min < r < range_max: a hit at r;
     - r >= range_max, also infinite: no hit, free up to range_max;
@@ -69,6 +74,7 @@ def trace_beams(
         range_max: largest valid range, m.
         margins: (N,) float32, m: each beam stops freeing cells this far before its
             hit.
+        fills: whether the space between neighbouring beams is freed.
 
     Returns:
         The number of beams with a hit inside the grid.
@@ -99,13 +105,17 @@ def trace_beams(
     position = float(sensor[0]), float(sensor[1])
     beams = _Beams(position, rays, metres, before, float(range_min), float(range_max))
     ends = np.empty(metres.size, np.int64)
-    hits: int = _trace_kernel(grid, grid_frame(spec), beams, ends)
+    hits: int = _trace_kernel(grid, grid_frame(spec), beams, ends, fills)
     return hits
 
 
 @kernel
 def _trace_kernel(
-    cost: Cells, frame: GridFrame, beams: _Beams, ends: NDArray[np.int64]
+    cost: Cells,
+    frame: GridFrame,
+    beams: _Beams,
+    ends: NDArray[np.int64],
+    fills: bool,
 ) -> int:
     height, width = cost.shape
     flat = cost.reshape(height * width)
@@ -130,12 +140,79 @@ def _trace_kernel(
             ends[i] = row * width + column
         share = 1.0 - margins[i] / reach if hit else 1.0
         _free_line(flat, width, int(v), int(u), row, column, share)
+        if fills and i > 0:
+            _free_between(flat, height, width, u, v, frame, beams, i)
     hits = 0
     for i in range(ranges.size):
         if ends[i] >= 0:
             flat[ends[i]] = LETHAL
             hits += 1
     return hits
+
+
+@kernel
+def _free_between(
+    flat: Cells,
+    height: int,
+    width: int,
+    u: float,
+    v: float,
+    frame: GridFrame,
+    beams: _Beams,
+    i: int,
+) -> None:
+    """Free the cells between the beams i − 1 and i, if both end on one surface.
+
+    Nothing that the beams missed can then stand in front of it, except thinner objects
+    than the beams are apart. Beams that end on different objects may pass an edge, so
+    nothing is freed between them.
+    """
+    reach = _surface(beams, i)
+    if reach <= 0.0:
+        return
+    per_metre = 1.0 / frame.resolution
+    ax, ay = beams.directions[i - 1, 0], beams.directions[i - 1, 1]
+    bx, by = beams.directions[i, 0], beams.directions[i, 1]
+    apart = np.hypot(bx - ax, by - ay)
+    wide = apart * reach * per_metre
+    lines = int(1.5 * wide)
+    for k in range(1, lines + 1):
+        part = k / (lines + 1)
+        dx, dy = ax + part * (bx - ax), ay + part * (by - ay)
+        du = (frame.cos * dx + frame.sin * dy) * per_metre
+        dv = (frame.cos * dy - frame.sin * dx) * per_metre
+        last = min(reach, _exit(u, du, width), _exit(v, dv, height))
+        # Nearer than this the beams themselves are less than a cell apart.
+        steps = int((last - 1.0 / (apart * per_metre)) * per_metre) + 1
+        for step in range(steps):
+            at = last - step * frame.resolution
+            row, column = int(v + at * dv), int(u + at * du)
+            if 0 <= row < height and 0 <= column < width:
+                flat[row * width + column] = FREE
+
+
+@kernel
+def _surface(beams: _Beams, i: int) -> float:
+    """Return how far the space between beams i − 1 and i is free; 0 = not known.
+
+    Two echoes belong to one surface if they are no farther apart than those of a wall
+    that the beams meet at 10°, or both beams end without an echo.
+    """
+    near, far = beams.ranges[i - 1], beams.ranges[i]
+    if not (near > beams.range_min and far > beams.range_min):
+        return 0.0
+    if near >= beams.range_max and far >= beams.range_max:
+        return beams.range_max
+    if near >= beams.range_max or far >= beams.range_max:
+        return 0.0
+    shorter = min(near, far)
+    ax, ay = beams.directions[i - 1, 0], beams.directions[i - 1, 1]
+    bx, by = beams.directions[i, 0], beams.directions[i, 1]
+    apart = np.hypot(bx - ax, by - ay)
+    if abs(near - far) > shorter * apart * _STEEPEST:
+        return 0.0
+    reach: float = shorter - max(beams.margins[i - 1], beams.margins[i])
+    return reach
 
 
 @kernel

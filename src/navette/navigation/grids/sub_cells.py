@@ -45,12 +45,19 @@ def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int6
 
 def points_of(masks: Masks, spec: GridSpec, cells: NDArray[np.int64]) -> Points:
     """Return the marked points (N, 2) of cells (M, 2) in the grid's frame, m."""
+    return points_by_cell(masks, spec, cells)[0]
+
+
+def points_by_cell(
+    masks: Masks, spec: GridSpec, cells: NDArray[np.int64]
+) -> tuple[Points, NDArray[np.int64]]:
+    """Return :func:`points_of`, and for each point the index (N,) of its cell."""
     row, column = cells.T
     bits = np.arange(SUB_CELLS**2, dtype=np.uint64)
     which, bit = np.nonzero((masks[row, column][:, None] >> bits) & np.uint64(1))
     u = column[which] + (bit % SUB_CELLS + 0.5) / SUB_CELLS
     v = row[which] + (bit // SUB_CELLS + 0.5) / SUB_CELLS
-    return spec.origin.apply(np.column_stack([u, v]) * spec.resolution)
+    return spec.origin.apply(np.column_stack([u, v]) * spec.resolution), which
 
 
 def cell_points(

@@ -20,12 +20,19 @@ from navette.navigation.grids import (
     compare,
     mark_points,
     merge,
+    points_by_cell,
     points_of,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.methods import MAPPINGS
 from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
+from navette.navigation.mapping.vanished import (
+    VanishedCells,
+    cells_beside,
+    passed,
+    without_echo,
+)
 
 
 class BodyMotion(NamedTuple):
@@ -99,6 +106,7 @@ class MapMemory:
         self._base = cells
         self._cells = cells.copy()
         self._masks = np.zeros(self.spec.shape, np.uint64)
+        self._vanished = VanishedCells(self.spec.shape)
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
             self._log_odds = self._evidence_of(cells)
@@ -125,6 +133,7 @@ class MapMemory:
         if corners is None:
             return False
         self._grow(corners)
+        kept = self._kept(costmap)
         lethal_cells = self._mark(costmap.hits)
         if self._own is not None:
             self._cells = self._own.update(
@@ -143,6 +152,7 @@ class MapMemory:
                 erase_within_m=self.params.erase_range_m,
                 lethal_cells=lethal_cells,
             )
+            self._cells[kept[:, 0], kept[:, 1]] = LETHAL
         if self.footprint is not None:
             self._free_under(self.footprint, costmap.map_T_base)
         if self._log_odds is not None:
@@ -209,8 +219,35 @@ class MapMemory:
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
         self._masks = np.pad(self._masks, pad)
+        self._vanished.grow(pad)
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
+
+    def _kept(self, costmap: PlacedCostmap) -> NDArray[np.int64]:
+        """Free the lethal cells whose obstacles vanished.
+
+        Return those (N, 2) that ``overwrite`` keeps, whatever the costmap says.
+        """
+        if costmap.hits is None or self.params.fusion != "overwrite":
+            return np.empty((0, 2), np.int64)
+        lethal = np.argwhere((self._cells >= LETHAL) & (self._masks != 0))
+        points, which = points_by_cell(self._masks, self.spec, lethal)
+        uv = self.spec.origin.inverse().apply(costmap.hits) / self.spec.resolution
+        hit_cells = np.floor(uv[:, ::-1]).astype(np.int64)
+        inside = (hit_cells >= 0) & (hit_cells < self.spec.shape)
+        beside = cells_beside(hit_cells[inside.all(axis=1)], self.spec.shape)
+        through = passed(points, costmap.hits, costmap.sensor)
+        silent = without_echo(
+            points, costmap.hits, costmap.sensor, self.spec.resolution
+        )
+        silent[silent] = _is_free(costmap, points[silent])
+        through |= silent
+        rows, columns = self._vanished.update(lethal[which][through], beside).T
+        self._cells[rows, columns] = FREE
+        self._masks[rows, columns] = 0
+        rows, columns = lethal.T
+        still = (self._cells[rows, columns] >= LETHAL) & ~beside[rows, columns]
+        return lethal[still]
 
     def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
         """Store where beams ended; return the cells (M, 2) with these points."""
@@ -266,6 +303,18 @@ class MapMemory:
         there_now = self._cells[rows, columns]
         clear = (there_now == UNKNOWN) | (there_now == LETHAL)
         self._cells[rows[clear], columns[clear]] = FREE
+
+
+def _is_free(costmap: PlacedCostmap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return (N,) whether points (N, 2), map frame, lie in cells that beams crossed."""
+    uv = costmap.spec.origin.inverse().apply(points) / costmap.spec.resolution
+    column, row = np.floor(uv).astype(np.int64).T
+    inside = (row >= 0) & (row < costmap.spec.height)
+    inside &= (column >= 0) & (column < costmap.spec.width)
+    free = np.zeros(len(points), np.bool_)
+    values = costmap.cells[row[inside], column[inside]]
+    free[inside] = (values >= FREE) & (values < LETHAL)
+    return free
 
 
 def _log_odds(probability: float) -> float:

@@ -169,3 +169,41 @@ def test_bad_input_is_named(change, text) -> None:
     }
     with pytest.raises(InvalidValueError, match=text):
         trace_beams(**(good | change))
+
+
+def fan(ranges: np.ndarray) -> np.ndarray:
+    """Return the cells of beams 0.05 rad apart about the x axis, 12 m at 0.05 m."""
+    spec = GridSpec(0.05, 240, 240, Pose2(-6.0, -6.0, 0.0))
+    cost = np.full(spec.shape, -1, np.int8)
+    directions = beam_directions(-0.05 * (len(ranges) - 1) / 2, 0.05, len(ranges))
+    trace_beams(
+        cost,
+        spec,
+        (0.0, 0.0),
+        directions,
+        ranges.astype(np.float32),
+        range_min=0.1,
+        range_max=5.5,
+        fills=True,
+    )
+    return cost
+
+
+def test_the_space_before_a_wall_is_free_without_rays() -> None:
+    angles = 0.05 * (np.arange(13) - 6)
+    cost = fan(4.0 / np.cos(angles))
+    # Column 190 is 3.5 m ahead, rows 110 to 129 within half a metre of the axis.
+    assert (cost[110:130, 150:190] == 0).mean() > 0.97
+    assert (cost[:, 205:] == -1).all()
+
+
+def test_nothing_is_freed_between_two_objects() -> None:
+    ranges = np.array([2.0, 2.0, 4.0, 4.0])
+    cost = fan(ranges)
+    assert (fan(np.full(4, 4.0))[119:121, 180:195] == 0).all()
+    assert (cost[119:121, 180:195] == -1).all()
+
+
+def test_beams_without_echo_free_the_space_between_them() -> None:
+    cost = fan(np.full(4, np.inf))
+    assert (cost[119:121, 180:215] == 0).all()

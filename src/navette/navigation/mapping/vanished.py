@@ -1,0 +1,108 @@
+"""Obstacles that beams passed: objects that moved away, also at a distance.
+
+At a distance, neighbouring beams pass a thin post on both sides and mark its cell free
+without having measured it; so a free cell there proves nothing. A beam that passes
+where an earlier one ended does: something that stood there would have ended it too.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+
+_ASIDE_M = 0.007
+"""Largest distance between a beam and a point that it passes."""
+_BEYOND_M = 0.1
+"""Least distance beyond the point at which the beam ends, against noise."""
+_TIMES = 3
+"""Scans without an echo from a cell or beside it after which it is free."""
+
+
+class VanishedCells:
+    """Counts, per cell, the scans whose beams passed the points in it.
+
+    ``shape`` is that of the map.
+    """
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self._passes = np.zeros(shape, np.uint8)
+
+    def grow(self, pad: tuple[tuple[int, int], tuple[int, int]]) -> None:
+        """Add cells around, as :func:`numpy.pad` does."""
+        self._passes = np.pad(self._passes, pad)
+
+    def update(
+        self, cells: NDArray[np.int64], beside: NDArray[np.bool_]
+    ) -> NDArray[np.int64]:
+        """Return the cells (K, 2) whose obstacles are gone.
+
+        Args:
+            cells: (N, 2) cells with a point that a beam of this scan passed.
+            beside: (H, W) cells with an echo in this scan, or beside one.
+        """
+        self._passes[beside] = 0
+        rows, columns = np.unique(cells, axis=0).T
+        still = ~beside[rows, columns]
+        rows, columns = rows[still], columns[still]
+        self._passes[rows, columns] += 1
+        gone = self._passes[rows, columns] >= _TIMES
+        rows, columns = rows[gone], columns[gone]
+        self._passes[rows, columns] = 0
+        return np.column_stack([rows, columns])
+
+
+def cells_beside(cells: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Return (H, W) the cells (N, 2) and the eight around each."""
+    mask = np.zeros((shape[0] + 2, shape[1] + 2), np.bool_)
+    for i in range(3):
+        for j in range(3):
+            mask[cells[:, 0] + i, cells[:, 1] + j] = True
+    return mask[1:-1, 1:-1]
+
+
+def without_echo(
+    points: Points, hits: Points, sensor: tuple[float, float], spacing_m: float
+) -> NDArray[np.bool_]:
+    """Return (N,) whether only beams without an echo can have gone through each point.
+
+    No beam beside the point has an echo, and beams there are at most ``spacing_m``
+    apart, so that something as wide would have ended one.
+    """
+    if len(hits) < 2 or len(points) == 0:
+        return np.zeros(len(points), np.bool_)
+    beams, there = hits - sensor, points - sensor
+    angles = np.sort(np.arctan2(beams[:, 1], beams[:, 0]))
+    steps = np.diff(angles)
+    step = float(np.median(steps[steps > 1e-5])) if (steps > 1e-5).any() else np.inf
+    angle = np.arctan2(there[:, 1], there[:, 0])
+    away = np.hypot(there[:, 0], there[:, 1])
+    following = np.searchsorted(angles, angle)
+    nearest = np.full(len(points), np.inf)
+    for beam in (following % len(angles), (following - 1) % len(angles)):
+        off = np.remainder(angle - angles[beam] + np.pi, 2 * np.pi) - np.pi
+        nearest = np.minimum(nearest, np.abs(off))
+    return np.asarray((nearest > 1.5 * step) & (away * step <= spacing_m))
+
+
+def passed(
+    points: Points, hits: Points, sensor: tuple[float, float]
+) -> NDArray[np.bool_]:
+    """Return (N,) whether a beam went through each point and ended well beyond it."""
+    if len(hits) == 0 or len(points) == 0:
+        return np.zeros(len(points), np.bool_)
+    beams = hits - sensor
+    order = np.argsort(np.arctan2(beams[:, 1], beams[:, 0]))
+    beams = beams[order]
+    angles = np.arctan2(beams[:, 1], beams[:, 0])
+    ranges = np.hypot(beams[:, 0], beams[:, 1])
+    there = points - sensor
+    angle = np.arctan2(there[:, 1], there[:, 0])
+    away = np.hypot(there[:, 0], there[:, 1])
+    following = np.searchsorted(angles, angle)
+    found = np.zeros(len(points), np.bool_)
+    for beam in (following % len(beams), (following - 1) % len(beams)):
+        off = np.remainder(angle - angles[beam] + np.pi, 2 * np.pi) - np.pi
+        aside = away * np.abs(np.sin(off)) <= _ASIDE_M
+        aside &= np.abs(off) < np.pi / 2
+        found |= aside & (ranges[beam] >= away + _BEYOND_M)
+    return found

@@ -1,0 +1,80 @@
+"""Obstacles that moved away at a distance, and thin posts that beams miss."""
+
+import numpy as np
+
+from navette.geometry import Pose2
+from navette.navigation.costmap import CostmapParams, PlanarScan, ScanCostmap
+from navette.navigation.grids import placed
+from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
+from navette.navigation.mapping.params import MapMemoryParams
+from navette.navigation.mapping.vanished import passed
+
+BEAMS = np.linspace(-np.pi, np.pi, 720, endpoint=False)
+COSTMAP = ScanCostmap(CostmapParams(resolution_m=0.05, size_m=22.0))
+
+
+def ranges_to(discs: np.ndarray, at: Pose2) -> np.ndarray:
+    """Return the distance to discs (N, 3) x, y, radius in a round room of 10 m."""
+    directions = np.column_stack([np.cos(BEAMS + at.yaw), np.sin(BEAMS + at.yaw)])
+    least = np.full(len(BEAMS), np.inf)
+    for *center, radius in [*discs.tolist(), (0.0, 0.0, 10.0)]:
+        off = np.array(center) - (at.x, at.y)
+        along = directions @ off
+        inside = radius**2 - (off @ off - along**2)
+        root = np.sqrt(np.maximum(inside, 0.0))
+        far = along + root if radius == 10.0 else along - root
+        least = np.where((inside > 0) & (far > 0), np.minimum(least, far), least)
+    return least
+
+
+def fuse(memory: MapMemory, discs: np.ndarray, at: Pose2) -> None:
+    scan = PlanarScan(
+        ranges_to(discs, at).astype(np.float32), -np.pi, np.pi / 360, 0.05, 20.0
+    )
+    there = placed(COSTMAP.spec, at)
+    hits = at.apply(COSTMAP.hits(scan))
+    cells = COSTMAP.build(scan)
+    memory.fuse(PlacedCostmap(cells, there, (at.x, at.y), at, 0, hits=hits))
+
+
+def lethal_near(memory: MapMemory, x: float, y: float, reach_m: float) -> int:
+    lethal = np.argwhere(memory.occupancy() >= 100)
+    centers = memory.spec.centers_of(lethal)
+    return int((np.hypot(*(centers - (x, y)).T) <= reach_m).sum())
+
+
+def views(count: int) -> list[Pose2]:
+    rng = np.random.default_rng(3)
+    return [Pose2(*rng.uniform((-1, -1, -3), (1, 1, 3))) for _ in range(count)]
+
+
+def test_a_box_that_crossed_the_room_leaves_no_trail_beyond_the_erase_range() -> None:
+    memory = MapMemory(MapMemoryParams(resolution_m=0.05, size_m=24.0))
+    poses = views(60)
+    for k, pose in enumerate(poses[:20]):
+        fuse(memory, np.array([(-3.0 + 0.3 * k, 7.0, 0.3)]), pose)
+    for pose in poses[20:]:
+        fuse(memory, np.array([(2.7, 7.0, 0.3)]), pose)
+    assert sum(lethal_near(memory, x, 7.0, 0.4) for x in np.arange(-3, 2, 0.5)) == 0
+    assert lethal_near(memory, 2.7, 7.0, 0.4)
+
+
+def test_thin_posts_stay_at_every_range() -> None:
+    memory = MapMemory(MapMemoryParams(resolution_m=0.05, size_m=24.0))
+    where = [(r, a) for r in (2.5, 4.5, 6.5, 8.5) for a in np.arange(0.1, 6.2, 0.35)]
+    posts = np.array([(r * np.cos(a), r * np.sin(a), 0.02) for r, a in where])
+    seen: set[int] = set()
+    for pose in views(60):
+        fuse(memory, posts, pose)
+        found = {
+            k for k, (x, y, _) in enumerate(posts) if lethal_near(memory, x, y, 0.09)
+        }
+        assert not seen - found
+        seen |= found
+    assert len(seen) >= len(posts) - 1
+
+
+def test_only_a_beam_through_the_point_that_ends_beyond_it_counts() -> None:
+    points = np.array([(2.0, 0.0), (2.0, 0.02), (2.0, -1.0), (-2.0, 0.0)])
+    hits = np.array([(4.0, 0.0), (2.05, -1.025)])
+    assert passed(points, hits, (0.0, 0.0)).tolist() == [True, False, False, False]
