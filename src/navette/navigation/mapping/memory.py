@@ -226,7 +226,7 @@ class MapMemory:
     def _kept(self, costmap: PlacedCostmap) -> NDArray[np.int64]:
         """Free the lethal cells whose obstacles vanished.
 
-        Return those (N, 2) that ``overwrite`` keeps, although the costmap shows no echo.
+        Return those (N, 2) that ``overwrite`` keeps without an echo.
         """
         if costmap.hits is None or self.params.fusion != "overwrite":
             return np.empty((0, 2), np.int64)
