@@ -51,8 +51,8 @@ Robot = Annotated[
     str | None,
     Option(
         metavar="NAME|PATH",
-        help="A built-in robot (jackal, turtlebot3_burger, husky, course) or a model"
-        " file. Default: the robot of the world.",
+        help="A built-in robot (jackal, turtlebot3_burger, husky, racecar, mecanum,"
+        " course) or a model file. Default: the robot of the world.",
         complete=complete_robots,
     ),
 ]

@@ -9,6 +9,7 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Pose2
+from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
@@ -335,3 +336,42 @@ def test_reset_restores_the_start() -> None:
     run.spin(0.1)
     stamp = run.received["/odom/filtered"][-1].header.stamp
     assert stamp.sec == 2  # the clock continues
+
+
+def _drive(run: Run, speed: float, steering: float) -> None:
+    publisher = run.ears.create_publisher(AckermannDriveStamped, "/drive", 10)
+    msg = AckermannDriveStamped()
+    msg.drive.speed, msg.drive.steering_angle = speed, steering
+    run.ears.create_timer(0.1, lambda: publisher.publish(msg))
+
+
+def test_drive_moves_a_steered_robot_and_an_emergency_stop_stops_it() -> None:
+    run = _run(load_world("empty"), robot="racecar", start=Pose2(0, 0, 0))
+    _drive(run, 0.8, 0.2)
+    run.spin(1.0)
+    motion = run.sim.simulator.motion()
+    assert motion.linear[0] == pytest.approx(0.8, rel=0.03)
+    assert motion.angular[2] == pytest.approx(0.8 * math.tan(0.2) / 0.3302, rel=0.05)
+    stop = run.ears.create_publisher(Bool, "/emergency_stop", 10)
+    stop.publish(Bool(data=True))
+    run.spin(0.5)
+    assert abs(run.sim.simulator.motion().linear[0]) < 0.02
+
+
+def test_drive_is_refused_by_a_robot_without_steering(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    run = _run(load_world("empty"), robot="jackal", start=Pose2(0, 0, 0))
+    _drive(run, 0.8, 0.2)
+    run.spin(1.0)
+    assert "refused /drive: no_steering" in capsys.readouterr().err
+    assert abs(run.sim.simulator.motion().linear[0]) < 0.01
+
+
+def test_a_twist_to_the_left_moves_a_mecanum_platform_sideways() -> None:
+    run = _run(load_world("empty"), robot="mecanum", start=Pose2(0, 0, 0))
+    publisher = run.ears.create_publisher(Twist, "/cmd_vel", 10)
+    command = Twist(linear=Vector3(y=0.5))
+    run.ears.create_timer(0.1, lambda: publisher.publish(command))
+    run.spin(1.0)
+    assert run.sim.simulator.motion().linear[1] == pytest.approx(0.5, abs=0.02)

@@ -55,7 +55,11 @@ class DriveState(NamedTuple):
 
 
 class CommandMethod(Protocol):
-    """A controller as a function of arrays."""
+    """A controller as a function of arrays.
+
+    With an attribute ``end_heading_tolerance_rad`` the path ends only with its last
+    heading.
+    """
 
     def command(
         self,
@@ -258,7 +262,11 @@ class CommandFollower:
     def _ends(self, inputs: FollowerInputs) -> bool:
         """Return whether the robot is at the end of the path."""
         tolerance = self._params.goal_tolerance_m
-        return self._end_m(inputs.pose) <= tolerance and self._left_m <= tolerance
+        if self._end_m(inputs.pose) > tolerance or self._left_m > tolerance:
+            return False
+        most = getattr(self._method, "end_heading_tolerance_rad", math.pi)
+        error = angle_difference(inputs.pose.yaw, float(self._path[-1, 2]))
+        return abs(error) <= most
 
     def _end_m(self, pose: Pose2) -> float:
         """Return the distance to the end of the path."""

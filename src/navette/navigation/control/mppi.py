@@ -20,7 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import DRIVES
-from navette.navigation.control.drive_models import ACKERMANN, OMNI, DriveLimits
+from navette.navigation.control.drive_models import (
+    ACKERMANN,
+    DIFFERENTIAL,
+    OMNI,
+    DriveLimits,
+)
 from navette.navigation.control.limits import NO_CAP, SpeedCap, VelocityCommand
 from navette.navigation.control.moving_obstacles import add_moving_costs
 from navette.navigation.control.params import ControlParams
@@ -57,6 +62,8 @@ _SWERVE_S = (0.4, 0.8)
 _SIDEWAYS = tuple(
     (v, side) for v in (-0.5, 0.0, 0.5) for side in (-1.0, -0.4, 0.4, 1.0)
 )
+# The share of the horizon after which manoeuvres end early.
+_EARLY = 3
 
 
 class MotionState(NamedTuple):
@@ -94,7 +101,7 @@ class Mppi:
         self._body = RolloutBody.of(body)
         steps, samples = params.mppi_steps, params.mppi_samples
         self._noise = self._draw(samples, steps, np.random.default_rng(seed))
-        self._fixed = np.repeat(self._manoeuvres()[None], steps, axis=0)
+        self._fixed = self._manoeuvres(steps)
         if swerves:
             self._fixed = np.concatenate([self._fixed, self._swerves(steps)], axis=2)
         self._commands = np.zeros((steps, len(self._most)), np.float32)
@@ -223,21 +230,30 @@ class Mppi:
         white[:, 0] = 0.0
         return np.ascontiguousarray(np.moveaxis(white * scale, 1, 3), np.float32)
 
-    def _manoeuvres(self) -> Array:
-        """Return the commands (D, F) of the fixed manoeuvres."""
+    def _manoeuvres(self, steps: int) -> Array:
+        """Return the commands (T, D, F) of the fixed manoeuvres.
+
+        Steered and omnidirectional drives also have each of them ending early: in a
+        narrow place noise that stays clear and stops in time is rare.
+        """
         limits = self._limits
         forward, turn = limits.max_speed, self._most[-1]
-        moves = [
+        moves: list[tuple[float, ...]] = [
             (v * (forward if v > 0 else limits.max_reverse), w * turn)
             for v, w in _MANOEUVRES
         ]
-        if self._drive != OMNI:
-            return np.array(moves).T
-        rolling = [(v, 0.0, w) for v, w in moves]
-        sliding = [
-            (v * forward, side * limits.max_side_speed, 0.0) for v, side in _SIDEWAYS
-        ]
-        return np.array(rolling + sliding).T
+        if self._drive == DIFFERENTIAL:
+            return np.repeat(np.array(moves).T[None], steps, axis=0)
+        if self._drive == OMNI:
+            moves = [(v, 0.0, w) for v, w in moves]
+            moves += [
+                (v * forward, side * limits.max_side_speed, 0.0)
+                for v, side in _SIDEWAYS
+            ]
+        whole = np.repeat(np.array(moves).T[None], steps, axis=0)
+        short = whole.copy()
+        short[steps // _EARLY :, : 1 if self._drive == ACKERMANN else None] = 0.0
+        return np.concatenate([whole, short], axis=2)
 
     def _swerves(self, steps: int) -> Array:
         """Return the commands (T, D, F) of turns off the path and back."""

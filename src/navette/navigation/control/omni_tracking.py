@@ -6,6 +6,7 @@ and the turn rate reduces the difference to the heading of the path there.
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,7 @@ class OmniTracking:
     """Holonomic carrot tracking within the speeds of the drive."""
 
     Params = ControlParams
+    end_heading_tolerance_rad: ClassVar[float] = 0.08
     params: ControlParams
 
     def command(

@@ -1,0 +1,92 @@
+"""Motion sets of the drives, and the paths that they give."""
+
+import math
+
+import numpy as np
+import pytest
+from planning_worlds import empty_map, fill
+
+from navette.errors import ParameterError
+from navette.geometry import DRIVES, Pose2
+from navette.navigation.planning import Goal, Outcome, Planner, PlannerParams
+from navette.navigation.planning.lattice_motions import MOVES, Motions
+from navette.navigation.planning.path_shape import lengths
+
+RADIUS_M = 0.85
+PARAMS = {
+    "differential": PlannerParams(clearance_margin_m=0.1, comfort_m=0.1),
+    "ackermann": PlannerParams(
+        drive="ackermann",
+        min_turning_radius_m=RADIUS_M,
+        clearance_margin_m=0.1,
+        comfort_m=0.1,
+    ),
+    "omni": PlannerParams(drive="omni", clearance_margin_m=0.1, comfort_m=0.1),
+}
+
+
+def plan(drive: str, start: Pose2, goal: Goal) -> np.ndarray:
+    """Return the poses in a room of 8 m with a wall in the middle."""
+    occupancy, spec = empty_map(8, 8)
+    fill(occupancy, spec, 3.8, 0.0, 4.2, 4.5)
+    planner = Planner(PARAMS[drive])
+    planner.set_map(occupancy, spec)
+    found = planner.plan(start, goal)
+    assert found.outcome is Outcome.OK
+    return found.poses
+
+
+def turned(poses: np.ndarray) -> np.ndarray:
+    """Return (N − 1,) radians between successive poses."""
+    steps = np.diff(poses[:, 2])
+    return np.asarray(np.abs(np.remainder(steps + np.pi, 2 * np.pi) - np.pi))
+
+
+def test_every_drive_has_a_motion_set() -> None:
+    assert tuple(MOVES) == DRIVES
+    for drive in DRIVES:
+        motions = Motions(step_m=0.3, reach_m=0.4, drive=drive)
+        assert len(set(motions.moves)) == len(motions.moves)
+        assert len(motions.offsets) == len(motions.costs_m) == len(motions.moves)
+        assert (motions.costs_m > 0).all()
+
+
+def test_only_an_ackermann_drive_does_not_turn_in_place() -> None:
+    for drive in DRIVES:
+        spins = [m for m in MOVES[drive] if not (m.forward or m.side)]
+        assert bool(spins) == (drive != "ackermann")
+
+
+@pytest.mark.parametrize(
+    "goal", [Goal(6.5, 2.0), Goal(6.5, 2.0, math.pi / 2), Goal(1.0, 2.0, -2.0)]
+)
+def test_an_ackermann_path_keeps_the_least_radius(goal: Goal) -> None:
+    poses = plan("ackermann", Pose2(1.5, 2.0, 0.0), goal)
+    assert np.all(turned(poses) * RADIUS_M <= 1.02 * lengths(poses) + 1e-6)
+    assert math.dist(poses[-1, :2], (goal.x, goal.y)) < 0.5
+    if goal.yaw is not None:
+        assert abs(math.remainder(poses[-1, 2] - goal.yaw, math.tau)) <= 0.2 + 1e-9
+
+
+def test_an_ackermann_drive_reverses_to_a_goal_behind_it() -> None:
+    poses = plan("ackermann", Pose2(2.5, 2.0, 0.0), Goal(1.2, 2.0, 0.0))
+    assert turned(poses).max() < 0.1, "it backs up instead of turning around"
+
+
+def test_an_omnidirectional_drive_moves_sideways_between_walls() -> None:
+    """The corridor is narrower than the body's diagonal."""
+    occupancy, spec = empty_map(4, 4)
+    fill(occupancy, spec, 0.0, 0.0, 1.65, 4.0)
+    fill(occupancy, spec, 2.35, 0.0, 4.0, 4.0)
+    planner = Planner(PARAMS["omni"])
+    planner.set_map(occupancy, spec)
+    poses = planner.plan(Pose2(2.0, 0.6, 0.0), Goal(2.0, 3.2, 0.0)).poses
+    assert math.dist(poses[-1, :2], (2.0, 3.2)) < 0.5
+    assert np.abs(poses[:, 2]).max() < 0.2
+
+
+def test_drive_and_radius_must_agree() -> None:
+    with pytest.raises(ParameterError, match="min_turning_radius_m"):
+        PlannerParams(drive="ackermann")
+    with pytest.raises(ParameterError, match="min_turning_radius_m"):
+        PlannerParams(min_turning_radius_m=1.0)

@@ -1,0 +1,160 @@
+"""Robots with Ackermann steering and with mecanum wheels move as commanded."""
+
+import math
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from navette.errors import FileFormatError, InvalidValueError
+from navette.geometry import Pose2
+from navette.sim import load_robot, load_world
+from navette.sim.drive import steering_angles
+from navette.sim.params import SimParams
+from navette.sim.scene import AckermannDrive, Model, Scene
+from navette.sim.sdf import read_sdf
+from navette.sim.simulator import Simulator
+
+LIMITS = {
+    "racecar": SimParams(
+        max_speed_mps=7.0,
+        max_reverse_speed_mps=3.0,
+        max_accel_mps2=7.0,
+        max_decel_mps2=7.0,
+        odometry="wheel",
+    ),
+    "mecanum": SimParams(
+        max_accel_mps2=3.0,
+        max_reverse_speed_mps=1.0,
+        max_yaw_accel_radps2=8.0,
+        odometry="wheel",
+    ),
+}
+
+
+@cache
+def scene(robot: str) -> Scene:
+    return load_world("empty").with_robot(load_robot(robot).model)
+
+
+def driven(
+    robot: str, command: tuple[float, float, float], steps: int = 100
+) -> Simulator:
+    """Command speed, yaw rate and speed to the left for steps of 10 ms."""
+    simulator = Simulator(scene(robot), LIMITS[robot], start=Pose2(0, 0, 0))
+    for _ in range(steps):
+        assert simulator.command(*command)
+        simulator.step(5)
+    return simulator
+
+
+@pytest.mark.parametrize(
+    "command",
+    [(0.8, 0, 0), (0, 0, 0.6), (0, 0, -0.6), (0, 0.9, 0), (-0.5, -0.4, 0.4)],
+)
+def test_a_mecanum_platform_moves_in_every_direction(
+    command: tuple[float, float, float],
+) -> None:
+    simulator = driven("mecanum", command)
+    motion = simulator.motion()
+    measured = motion.linear[0], motion.angular[2], motion.linear[1]
+    assert measured == pytest.approx(command, abs=0.03)
+    odometry = simulator.wheel_odometry()
+    assert odometry.pose == pytest.approx(simulator.pose().to_pose2(), abs=0.06)
+
+
+def test_mecanum_odometry_reports_the_speed_to_the_left() -> None:
+    simulator = driven("mecanum", (0.0, 0.0, 0.5), 50)
+    simulator.wheel_odometry().motion()
+    for _ in range(20):
+        simulator.command(0.0, 0.0, 0.5)
+        simulator.step(5)
+    assert simulator.wheel_odometry().motion().side == pytest.approx(0.5, abs=0.01)
+
+
+@pytest.mark.parametrize(("speed", "steering"), [(1.0, 0.3), (1.5, -0.2), (-0.8, 0.41)])
+def test_a_racecar_drives_the_circle_of_its_steering(
+    speed: float, steering: float
+) -> None:
+    simulator = Simulator(scene("racecar"), LIMITS["racecar"], start=Pose2(0, 0, 0))
+    for _ in range(150):
+        assert simulator.steer(speed, steering)
+        simulator.step(5)
+    motion = simulator.motion()
+    assert motion.linear[0] == pytest.approx(speed, rel=0.02)
+    expected = speed * math.tan(steering) / 0.3302
+    assert motion.angular[2] == pytest.approx(expected, rel=0.03)
+
+
+def test_a_racecar_never_turns_tighter_than_its_steering_allows() -> None:
+    simulator = driven("racecar", (0.5, 6.0, 0.0), 150)
+    most = 0.5 * math.tan(0.41) / 0.3302
+    assert simulator.motion().angular[2] == pytest.approx(most, rel=0.03)
+
+
+def test_a_racecar_does_not_turn_in_place() -> None:
+    simulator = driven("racecar", (0.0, 2.0, 0.0))
+    assert simulator.motion().angular[2] == pytest.approx(0.0, abs=0.01)
+    assert simulator.pose().to_pose2().yaw == pytest.approx(0.0, abs=0.01)
+
+
+def test_both_steered_wheels_turn_about_the_same_centre() -> None:
+    drive = load_robot("racecar").model.drive
+    assert isinstance(drive, AckermannDrive)
+    left, right = steering_angles(drive, 0.3)
+    radius = drive.wheel_base / math.tan(0.3)
+    half = drive.kingpin_width / 2
+    assert math.tan(left) == pytest.approx(drive.wheel_base / (radius - half))
+    assert math.tan(right) == pytest.approx(drive.wheel_base / (radius + half))
+
+
+def test_commands_that_are_not_finite_have_no_effect() -> None:
+    for robot, bad in (("mecanum", (0.0, 0.0, math.nan)), ("racecar", (0.0, math.inf))):
+        simulator = Simulator(scene(robot), LIMITS[robot], start=Pose2(0, 0, 0))
+        assert not simulator.command(*bad)
+    assert not simulator.steer(math.nan, 0.0)
+    assert not simulator.steer(1.0, math.inf)
+
+
+def test_only_steered_wheels_can_be_steered() -> None:
+    simulator = Simulator(scene("mecanum"), LIMITS["mecanum"], start=Pose2(0, 0, 0))
+    with pytest.raises(InvalidValueError, match="not steered"):
+        simulator.steer(1.0, 0.1)
+
+
+ACKERMANN = """<sdf version="1.9"><model name="m"><link name="l"/>
+<plugin filename="gz-sim-ackermann-steering-system" name="AckermannSteering">
+{content}</plugin></model></sdf>"""
+MECANUM = ACKERMANN.replace("ackermann-steering", "mecanum-drive").replace(
+    "AckermannSteering", "MecanumDrive"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "content", "expected"),
+    [
+        (
+            ACKERMANN,
+            "<left_joint>a</left_joint><right_joint>b</right_joint>"
+            "<wheel_separation>1</wheel_separation><wheel_radius>1</wheel_radius>",
+            "left_steering_joint",
+        ),
+        (MECANUM, "<wheel_separation>1</wheel_separation>", "front_left_joint"),
+    ],
+)
+def test_incomplete_plugins_name_what_is_missing(
+    tmp_path: Path, text: str, content: str, expected: str
+) -> None:
+    path = tmp_path / "m.sdf"
+    path.write_text(text.format(content=content), encoding="utf-8")
+    with pytest.raises(FileFormatError, match=expected):
+        read_sdf(path)
+
+
+def test_the_models_have_their_drives() -> None:
+    def kind(robot: str) -> str:
+        model: Model = load_robot(robot).model
+        return type(model.drive).__name__
+
+    assert kind("racecar") == "AckermannDrive"
+    assert kind("mecanum") == "MecanumDrive"
