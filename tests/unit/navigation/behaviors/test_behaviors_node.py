@@ -174,6 +174,14 @@ def test_sideways_is_refused(room: Room) -> None:
     assert room.finish(turn, 1.0).error_code == Spin.Result.UNKNOWN
 
 
+def test_a_spin_is_refused_where_the_drive_cannot_turn_in_place(room: Room) -> None:
+    room.node.set_parameters([Parameter("drive", value="ackermann")])
+    spin = room.send(Spin, "spin", target_yaw=1.57)
+    result = room.finish(spin, 1.0)
+    assert spin.status == GoalStatus.STATUS_ABORTED
+    assert "cannot turn in place" in result.error_msg
+
+
 def test_an_obstacle_ahead_ends_the_drive_before_it(room: Room) -> None:
     probe = room.drive(3.0, 0.4)
     result = room.finish(probe)

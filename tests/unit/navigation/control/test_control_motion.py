@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.limits import (
     STOP,
     VelocityCommand,
@@ -21,6 +22,7 @@ from navette.navigation.control.rotate import (
     turn_rate,
 )
 from navette.navigation.control.speed_profile import approach_speed, speed_profile
+from navette.navigation.control.states import ControlState
 from navette.navigation.control.turn_gain import TurnGain
 
 PARAMS = ControlParams(
@@ -156,3 +158,29 @@ def test_the_turn_gain_stays_bounded_for_a_stuck_or_straight_robot() -> None:
     for _ in range(400):
         gain.update(0.8, 0.0, 0.05)
     assert gain.value == 0.7
+
+
+def test_the_gate_covers_the_curvature_and_the_speed_to_the_left() -> None:
+    car = ControlParams(drive="ackermann", min_turning_radius_m=0.8)
+    gate = CommandGate(car)
+    assert gate.refusal(VelocityCommand(0.8, 1.0)) is None
+    assert gate.refusal(VelocityCommand(0.4, 0.6)) is ControlState.COMMAND_OVER_LIMIT
+    assert gate.refusal(VelocityCommand(0.8, 0, 0.1)) is ControlState.COMMAND_OVER_LIMIT
+    platform = CommandGate(ControlParams(drive="omni", max_side_speed_mps=0.5))
+    assert platform.refusal(VelocityCommand(0.0, 0.3, -0.5)) is None
+    fast = VelocityCommand(0.0, 0.0, 0.6)
+    assert platform.refusal(fast) is ControlState.COMMAND_OVER_LIMIT
+    broken = VelocityCommand(0.0, 0.0, math.nan)
+    assert platform.refusal(broken) is ControlState.COMMAND_NOT_FINITE
+
+
+def test_a_steered_drive_turns_as_much_as_its_speed_allows() -> None:
+    car = ControlParams(drive="ackermann", min_turning_radius_m=0.8)
+    assert clamp(VelocityCommand(0.4, 1.0), car) == pytest.approx((0.4, 0.5, 0.0))
+    assert clamp(VelocityCommand(0.0, 1.0), car) == STOP
+
+
+def test_an_omnidirectional_drive_keeps_its_direction_within_the_limits() -> None:
+    platform = ControlParams(drive="omni", max_side_speed_mps=0.5, max_speed_mps=1.0)
+    slowed = clamp(VelocityCommand(1.0, 0.0, 1.0), platform)
+    assert slowed == pytest.approx((0.5, 0.0, 0.5))

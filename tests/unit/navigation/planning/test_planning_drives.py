@@ -8,7 +8,7 @@ from planning_worlds import empty_map, fill
 
 from navette.errors import ParameterError
 from navette.geometry import DRIVES, Pose2
-from navette.navigation.planning import Goal, Outcome, Planner, PlannerParams
+from navette.navigation.planning import Goal, Planner, PlannerParams
 from navette.navigation.planning.lattice_motions import MOVES, Motions
 from navette.navigation.planning.path_shape import lengths
 
@@ -28,11 +28,11 @@ PARAMS = {
 def plan(drive: str, start: Pose2, goal: Goal) -> np.ndarray:
     """Return the poses in a room of 8 m with a wall in the middle."""
     occupancy, spec = empty_map(8, 8)
-    fill(occupancy, spec, 3.8, 0.0, 4.2, 4.5)
+    fill(occupancy, spec, (3.8, 4.2), (0.0, 4.5))
     planner = Planner(PARAMS[drive])
     planner.set_map(occupancy, spec)
     found = planner.plan(start, goal)
-    assert found.outcome is Outcome.OK
+    assert found.outcome.has_path
     return found.poses
 
 
@@ -76,8 +76,8 @@ def test_an_ackermann_drive_reverses_to_a_goal_behind_it() -> None:
 def test_an_omnidirectional_drive_moves_sideways_between_walls() -> None:
     """The corridor is narrower than the body's diagonal."""
     occupancy, spec = empty_map(4, 4)
-    fill(occupancy, spec, 0.0, 0.0, 1.65, 4.0)
-    fill(occupancy, spec, 2.35, 0.0, 4.0, 4.0)
+    fill(occupancy, spec, (0.0, 1.65), (0.0, 4.0))
+    fill(occupancy, spec, (2.35, 4.0), (0.0, 4.0))
     planner = Planner(PARAMS["omni"])
     planner.set_map(occupancy, spec)
     poses = planner.plan(Pose2(2.0, 0.6, 0.0), Goal(2.0, 3.2, 0.0)).poses
