@@ -37,7 +37,7 @@ class PlannerParams(Params):
         at_most=10.0,
     )  # fmt: skip
     tight_margin_m: float = param(
-        0.04, "clearance where no path has clearance_margin_m", unit="m",
+        0.03, "clearance where no path has clearance_margin_m", unit="m",
         at_least=0.0, at_most=10.0,
     )  # fmt: skip
     comfort_m: float = param(
