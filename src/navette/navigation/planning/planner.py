@@ -8,7 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import NO_DISCS, GridSpec, Layer, StartArea, unseen_mask
+from navette.navigation.grids import (
+    NO_DISCS,
+    GridSpec,
+    Layer,
+    StartArea,
+    exact_clearances,
+    make_outline,
+    unseen_mask,
+)
 from navette.navigation.planning.body_space import reachable
 from navette.navigation.planning.close_look import CloseMap, close_map
 from navette.navigation.planning.detour import DetourPlanner, Target
@@ -51,6 +59,8 @@ _ROOMY_END = 2.0
 _STEERABLE_M = 0.02
 # Searches on the map's own cells, and through gaps, get this part of the budget.
 _QUICK_SHARE = 4
+# In a passage the clearance varies by this, and is not planned below the least.
+_SWAY_M, _LEAST_M = 0.01, 0.01
 
 
 @dataclass(frozen=True)
@@ -237,22 +247,31 @@ class Planner:
             known = plan.outcome in (Outcome.START_BLOCKED, Outcome.GOAL_BLOCKED)
             return plan if known else replace(plan, outcome=why)
         slack = closer.spec.resolution
+        margin = self._margin_from(start)
         body = BodyShape.of(self.footprint, slack)
         quick = self.params.max_expansions // _QUICK_SHARE
         found = self._on_close_map(closer, body.through_gaps(slack))._plan_with(
-            self._tight_m, start, goal, max_expansions=quick
+            margin, start, goal, max_expansions=quick
         )
         if found.outcome.has_path:
             return found
         # Only what an exact pose on every cell confirms is worth the long search.
         if self._why_impossible(closer, start, goal, 0.0) is None:
             found = self._on_close_map(closer, body.loose(slack))._plan_with(
-                self._tight_m, start, goal, max_expansions=quick
+                margin, start, goal, max_expansions=quick
             )
         if found.outcome is not Outcome.SEARCH_LIMIT:
             return found
-        why = self._why_impossible(closer, start, goal, self._tight_m)
+        why = self._why_impossible(closer, start, goal, margin)
         return found if why is None else replace(found, outcome=Outcome.NO_PATH)
+
+    def _margin_from(self, start: Pose2) -> float:
+        """Return the tight margin, or less in a passage where the robot has less."""
+        pose = np.array([[start.x, start.y, start.yaw]])
+        obstacles, outline = self.grid().exact_obstacles, make_outline(self.footprint)
+        tight = self._tight_m
+        here = float(exact_clearances(obstacles, outline, pose, tight + _SWAY_M)[0])
+        return min(tight, max(here - _SWAY_M, _LEAST_M))
 
     def _on_close_map(self, closer: CloseMap, body: BodyShape) -> "Planner":
         other = Planner(self.params)
