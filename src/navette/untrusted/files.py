@@ -47,6 +47,8 @@ def read_bounded(path: Path, budget: Budget) -> bytes:
             data = file.read(budget.octets + 1)
     except OSError as error:
         raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
+    except ValueError as error:  # a name that no file can have
+        raise FileFormatError(path, f"cannot be read: {error}") from error
     if len(data) > budget.octets:
         raise FileFormatError(path, f"more than {budget.octets} bytes; not read")
     return data

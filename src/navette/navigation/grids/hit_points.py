@@ -64,8 +64,9 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
         np.ascontiguousarray(rows[:, end - _FIELD_BYTES : end]).view("<f4")
         for end in ends
     ]
-    points = np.concatenate(columns, axis=1).astype(np.float64)
-    return points[np.isfinite(points).all(axis=1)]
+    points = np.concatenate(columns, axis=1)
+    finite: NDArray[np.float64] = points[np.isfinite(points).all(axis=1)].astype(float)
+    return finite
 
 
 class HitPoints:
