@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 # Largest part into which a cell at the border of the start area is divided.
 _PART_M = 0.02
+_MOST_PARTS = 16  # per side of a large cell
 # No robot backs into space that it cannot see faster than it stops in this distance.
 _FARTHEST_M = 10.0
 
@@ -115,8 +116,8 @@ def _unseen(
     v = (frame.cos * dy - frame.sin * dx) / size
     top, left = math.floor(v - reach / size), math.floor(u - reach / size)
     count = math.ceil(2 * reach / size) + 1
-    parts = max(1, math.ceil(size / _PART_M))
-    points = np.empty((count * count + 64, 2))
+    parts = max(1, min(_MOST_PARTS, math.ceil(size / _PART_M)))
+    points = np.empty((count * count + parts * parts, 2))
     found = 0
     for row in range(top, top + count):
         for column in range(left, left + count):
