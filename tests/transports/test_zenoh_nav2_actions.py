@@ -38,6 +38,11 @@ class DistantStack:
     def speed(self) -> float:
         return abs(float(self.sim.simulator.motion().linear[0]))
 
+    @property
+    def pose(self) -> Pose2:
+        pose: Pose2 = self.sim.simulator.pose().to_pose2()
+        return pose
+
     def until(self, condition: Any, what: str) -> None:
         def look() -> bool:
             near, far = self._executors
@@ -91,11 +96,13 @@ def test_plan_follow_cancel_back_up_and_clear(
     assert response.status == GoalStatus.STATUS_SUCCEEDED, response.result.error_msg
     path = response.result.path
     assert len(path.poses) > 10
+    start = distant.pose
     feedback: list[Any] = []
     handle = distant.send(
         FollowPath, "follow_path", FollowPath.Goal(path=path), feedback.append
     )
-    distant.until(lambda: distant.speed > 0.3, "motion")
+    # Far enough to back up over what was seen: the laser does not see behind.
+    distant.until(lambda: distant.pose.x - start.x > 0.5, "motion")
     handle.cancel_goal_async()
     response = distant.result(handle)
     assert response.status == GoalStatus.STATUS_CANCELED

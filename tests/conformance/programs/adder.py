@@ -40,8 +40,8 @@ class Caller(Node):
     def call(self):
         if self.done or not self.client.service_is_ready():
             return
-        self.done = True
         print("blocking:", self.client.call(AddTwoInts.Request(a=5, b=6)).sum)
+        self.done = True  # ends the program, whose main thread does not wait for this
 
 
 def serve():

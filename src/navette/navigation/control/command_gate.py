@@ -9,7 +9,7 @@ from navette.navigation.control.states import ControlState
 
 _ROUNDING = 1e-6
 # Share of the timeout from which an input is late, and of the speed at the timeout.
-_LATE = 0.5
+_LATE = 0.4
 _SLOWEST = 1 / 3
 
 

@@ -241,13 +241,14 @@ def test_obstacles_beside_the_path_do_not_slow_the_robot_down() -> None:
 
 
 def test_an_obstacle_on_the_path_is_approached_slowly() -> None:
-    follower = PathFollower(big_robot())
+    params = big_robot()
+    follower = PathFollower(params)
     follower.set_obstacles(np.array([[8.0, 0.4]]), 0.05)
     follower.set_path(tangent_path(PATHS["straight"]))
     plant = Plant(Pose2(0, 0, 0))
     result = run(follower, plant, 20.0)
     assert result.final.state == "blocked"
-    assert closest(result, np.array([[8.0, 0.4]])) > 0.05
+    assert closest(result, np.array([[8.0, 0.4]])) > params.collision_margin_m
     limits = [output.limited_by for output in result.outputs]
     slow = limits.index("clearance")
     assert result.speeds[slow] > 1.0
