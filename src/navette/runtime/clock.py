@@ -63,6 +63,8 @@ class ContextClock(ABC):
     is_virtual: bool = False
     #: Whether virtual time follows the wall clock.
     is_paced: bool = False
+    #: Whether time jumps to the next event: computations take no time.
+    jumps: bool = False
     #: Whether other processes share the clock, so that a run without events waits for
     #: theirs instead of ending.
     is_shared: bool = False
@@ -95,6 +97,7 @@ class VirtualClock(ContextClock):
     """Simulated time that jumps to the next event."""
 
     is_virtual = True
+    jumps = True
     now_ns: int = 0
 
     def __init__(self, start_ns: int = 0) -> None:
@@ -118,6 +121,7 @@ class PacedClock(VirtualClock):
     """
 
     is_paced = True
+    jumps = False
 
     def __init__(self, factor: float = 1.0, start_ns: int = 0) -> None:
         super().__init__(start_ns)

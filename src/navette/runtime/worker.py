@@ -39,7 +39,7 @@ class Worker:
         The exception of a failed computation is raised in the event loop.
         """
         clock = self._loop.clock
-        if not self._loop.in_driver_thread or (clock.is_virtual and not clock.is_paced):
+        if not self._loop.in_driver_thread or clock.jumps:
             finish(compute())
             return
         if self._threads is None:

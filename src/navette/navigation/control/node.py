@@ -326,7 +326,9 @@ class ControlNode(StageNode):
         self._costmap_period.reset()
         self._odometry = None
         self._odometry_ns = self._located_ns = _NEVER
-        self._planner_ns = _NEVER
+        self._planner_ns, self._planner_state = _NEVER, ""
+        self._stall = StallMonitor(self.params.stall_time_s)
+        self._commanded = STOP
 
     def destroy_node(self) -> None:
         """Stop the robot, then destroy the node."""

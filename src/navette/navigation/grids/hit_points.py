@@ -87,7 +87,9 @@ class HitPoints:
         """
         stamp = msg.header.stamp
         stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
-        self._clouds[stamp_ns] = points_from_message(msg)
+        points = points_from_message(msg)
+        self._clouds.pop(stamp_ns, None)  # of an earlier run: now the newest
+        self._clouds[stamp_ns] = points
         while len(self._clouds) > _KEPT:
             del self._clouds[next(iter(self._clouds))]
         return stamp_ns

@@ -40,6 +40,7 @@ class LockStepClock(ContextClock):
     """
 
     is_virtual = True
+    jumps = True
     is_shared = True
     now_ns: int = 0
 
