@@ -51,7 +51,7 @@ def drive(path: Path) -> None:
 
 def cut(source: BagReader, stage: Stage) -> None:
     """Write the stage's inputs and outputs to its bag, from the start."""
-    writer = BagWriter(stage.bag)
+    writer = BagWriter(stage.bag, overwrite=True)
     numbers = {}
     end_ns = source.start_ns + round(stage.duration_s * 1e9)
     topics = "/parameter_events", *stage.inputs, *stage.outputs

@@ -249,11 +249,16 @@ class CommandFollower:
 
     def _advance(self, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""
-        stop = int(np.searchsorted(self._measure, self._measure[self._at] + _AHEAD_M))
-        near = self._path[self._at : max(stop, self._at + 1)]
-        dx, dy = pose.x - near[:, 0], pose.y - near[:, 1]
-        best = int(np.argmin(np.hypot(dx, dy)))
-        self._at += best
+        while True:
+            end_m = self._measure[self._at] + _AHEAD_M
+            stop = max(int(np.searchsorted(self._measure, end_m)), self._at + 1)
+            near = self._path[self._at : stop]
+            dx, dy = pose.x - near[:, 0], pose.y - near[:, 1]
+            best = int(np.argmin(np.hypot(dx, dy)))
+            self._at += best
+            # The robot may be far along a path that is published again.
+            if best == 0 or self._at + 1 < stop:
+                break
         yaw = self._path[self._at, 2]
         side = math.cos(yaw) * dy[best] - math.sin(yaw) * dx[best]
         self._cross_track = math.copysign(math.hypot(dx[best], dy[best]), side)

@@ -248,14 +248,19 @@ class PredictiveFollower:
 
     def _advance(self, path: PathWindow, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""
-        stop = int(np.searchsorted(path.measure, path.measure[self._at] + _SEARCH_M))
-        near = slice(self._at, max(stop, self._at + 1))
-        dx, dy = pose.x - path.x[near], pose.y - path.y[near]
-        away = np.hypot(dx, dy)
-        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
-        error = np.arccos(np.clip(c * path.cos[near] + s * path.sin[near], -1, 1))
-        best = int(np.argmin(away + METRES_PER_RADIAN * error))
-        self._at += best
+        while True:
+            end_m = path.measure[self._at] + _SEARCH_M
+            stop = max(int(np.searchsorted(path.measure, end_m)), self._at + 1)
+            near = slice(self._at, stop)
+            dx, dy = pose.x - path.x[near], pose.y - path.y[near]
+            away = np.hypot(dx, dy)
+            c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+            error = np.arccos(np.clip(c * path.cos[near] + s * path.sin[near], -1, 1))
+            best = int(np.argmin(away + METRES_PER_RADIAN * error))
+            self._at += best
+            # The robot may be far along a path that is published again.
+            if best == 0 or self._at + 1 < stop:
+                break
         side = path.cos[self._at] * dy[best] - path.sin[self._at] * dx[best]
         self._cross_track = math.copysign(float(away[best]), side)
         turned = path.cos[self._at] * s - path.sin[self._at] * c

@@ -190,12 +190,21 @@ def test_lost_inputs_have_their_codes(world: World) -> None:
     assert finished(world, probe, 6.0).error_code == Result.TF_ERROR
 
 
-def test_a_robot_that_does_not_move_makes_no_progress(world: World) -> None:
+def test_a_robot_that_does_not_move_stalls(world: World) -> None:
     probe = follow(world, tangent_path(np.array([[0, 0], [3, 0.0]])))
     world.plant.lag_s = 1e9  # the wheels do not turn
     result = finished(world, probe, 15.0)
     assert result.error_code == Result.FAILED_TO_MAKE_PROGRESS
-    assert "10 s" in result.error_msg
+    assert "stalled for 2.0 s" in result.error_msg
+
+
+def test_a_robot_that_creeps_makes_no_progress(world: World) -> None:
+    """It moves as commanded, so it does not stall, but not far enough."""
+    world.graph.publish("/speed_limit", SpeedLimit(speed_limit=0.03))
+    probe = follow(world, tangent_path(np.array([[0, 0], [3, 0.0]])))
+    result = finished(world, probe, 15.0)
+    assert result.error_code == Result.FAILED_TO_MAKE_PROGRESS
+    assert "in 10 s (following)" in result.error_msg
 
 
 def test_speed_limits_apply_and_are_removed(world: World) -> None:

@@ -122,3 +122,17 @@ def test_the_local_field_measures_from_cell_centres() -> None:
     assert field.x + column * 0.1 <= 1.0 <= field.x + (column + 1) * 0.1
     assert field.y + row * 0.1 <= 2.0 <= field.y + (row + 1) * 0.1
     assert field.distance_m[row, column + 5] == pytest.approx(0.5)
+
+
+def test_a_path_that_is_published_again_is_followed_from_the_robot() -> None:
+    """A planner may repeat its path: the robot is then far from its start."""
+    path = tangent_path(np.array([[0, 0], [30, 0.0]]))
+    robot, plant = follower(), Plant(Pose2(25.0, 0.0, 0.0))
+    speeds = []
+    for _ in range(20):
+        robot.set_path(path)
+        (output,) = run(robot, plant, 0.05).outputs
+        assert output.state == "following"
+        assert output.distance_left_m < 5.1
+        speeds.append(output.command.speed)
+    assert speeds[-1] > 0.3
