@@ -448,13 +448,24 @@ class ControlNode(StageNode):
         measured = (inputs.speed, inputs.turn_rate, inputs.side_speed)
         dt = 1 / self.params.rate_hz
         stalls = inputs.plausible and self._stall.update(
-            self._commanded, pose, measured, dt
+            self._commanded, pose, measured, dt, self._delay_s()
         )
         if output.state.moves and (stalls or self._stall.forbids(output.command, pose)):
             self._pause_follower()
             output = output._replace(command=STOP, state=ControlState.STALLED)
         self._commanded = output.command
         return output
+
+    def _delay_s(self) -> float:
+        """Return the time from a command until its motion is measured here.
+
+        Twice the age of the newest odometry: there and back; the period of control is
+        not a delay.
+        """
+        stamp_ns = self._tracker.stamp_ns
+        age_s = 0.0 if stamp_ns is None else (self._now_ns - stamp_ns) / 1e9
+        params: ControlParams = self.params
+        return 2 * max(0.0, age_s - 1 / params.rate_hz)
 
     def _locate(self) -> None:
         if self._odometry is not None and self._tracker.update(self._odometry):

@@ -9,6 +9,7 @@ from navette.geometry import Pose2, angle_difference
 
 # First-order lag of a drive, applied to the command.
 _LAG_S = 0.15
+_LONGEST_DELAY_S = 2.0
 # Share of the commanded motion below which the robot does not move.
 _LEAST_SHARE = 0.2
 # Commanded motion within the time below which nothing can be concluded.
@@ -62,10 +63,12 @@ class StallMonitor:
         self._steps: deque[_Step] = deque()
         self._span_s = 0.0
         self._lagging = _REST
+        #: Commands of the last seconds, the oldest first.
+        self._given: deque[tuple[float, _Motion]] = deque()
 
     def update(
         self, command: Sequence[float], pose: Pose2, measured: Sequence[float],
-        dt: float,
+        dt: float, delay_s: float = 0.0,
     ) -> bool:  # fmt: skip
         """Return whether the robot stalls.
 
@@ -74,6 +77,8 @@ class StallMonitor:
             pose: of the robot.
             measured: its motion.
             dt: period.
+            delay_s: from a command until its motion is measured here: over a network,
+                only what was commanded all that time can be concluded from.
         """
         self._bump_age_s += dt
         if self._time_s == 0.0:
@@ -86,6 +91,7 @@ class StallMonitor:
         )  # fmt: skip
         # A drive may lag behind its command, or follow it at once.
         wanted = _Motion(*map(_common, given, self._lagging))
+        wanted = self._commanded_all_along(wanted, given, dt, delay_s)
         speed = math.hypot(wanted.speed, wanted.side)
         moved = found.along(wanted) / speed if speed else 0.0
         turned = math.copysign(1.0, wanted.turn_rate) * found.turn_rate
@@ -115,6 +121,22 @@ class StallMonitor:
         if bumped.along(bumped) == 0.0:
             return given.along(given) == 0.0 and given.turn_rate * bumped.turn_rate > 0
         return given.along(bumped) > 0.0
+
+    def _commanded_all_along(
+        self, wanted: _Motion, given: _Motion, dt: float, delay_s: float
+    ) -> _Motion:
+        """Return the part of a motion that was commanded during the whole delay."""
+        self._given.append((dt, given))
+        span_s = sum(each for each, _ in self._given)
+        while len(self._given) > 1 and span_s - self._given[0][0] >= _LONGEST_DELAY_S:
+            span_s -= self._given.popleft()[0]
+        left_s = min(delay_s, _LONGEST_DELAY_S)
+        for each_s, motion in reversed(self._given):
+            if left_s <= 0.0:
+                return wanted
+            wanted = _Motion(*map(_common, wanted, motion))
+            left_s -= each_s
+        return wanted if left_s <= 0.0 else _REST  # nothing was commanded before
 
     def _append(self, step: _Step) -> None:
         self._steps.append(step)

@@ -104,3 +104,27 @@ def test_a_stalled_turn_forbids_only_that_turn() -> None:
 def test_zero_switches_it_off() -> None:
     monitor = StallMonitor(0.0)
     assert not any(monitor.update(AHEAD, HERE, (0.0, 0.0), DT) for _ in range(100))
+
+
+@pytest.mark.parametrize(("delay_s", "stalls"), [(0.0, True), (0.5, False)])
+def test_motion_that_is_measured_late_is_not_a_stall(
+    delay_s: float, stalls: bool
+) -> None:
+    """A robot behind a slow network starts from rest."""
+    monitor = StallMonitor(0.3)
+    found = [
+        monitor.update(
+            (0.5, 0.0), Pose2(0, 0, 0), (0.5 if at >= 10 else 0.0, 0.0), 0.05, delay_s
+        )
+        for at in range(30)
+    ]
+    assert any(found) == stalls
+
+
+def test_a_stall_behind_a_slow_network_is_found_after_the_delay() -> None:
+    monitor = StallMonitor(0.3)
+    found = [
+        monitor.update((0.5, 0.0), Pose2(0, 0, 0), (0.0, 0.0), 0.05, 0.5)
+        for _ in range(30)
+    ]
+    assert 16 <= found.index(True) <= 20
