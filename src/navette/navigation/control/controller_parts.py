@@ -1,6 +1,7 @@
 """Parts of the controller that all pieces of all paths share."""
 
 from dataclasses import dataclass
+from typing import Self
 
 from navette.geometry import Footprint
 from navette.navigation.control.params import ControlParams
@@ -13,18 +14,28 @@ _REPORTED_M = 0.3
 
 
 @dataclass(frozen=True)
-class ControllerParts:
-    """Parameters and stateful parts; built once for a set of parameters."""
+class TurnParts:
+    """Parameters and the stateful parts that a turn in place needs."""
 
     params: ControlParams
-    steering: Steering
     collision: CollisionCheck
     turn_gain: TurnGain
 
     @classmethod
-    def of(cls, params: ControlParams) -> "ControllerParts":
-        steering = make_steering(params)
-        return cls(params, steering, collision_check(params), TurnGain())
+    def of(cls, params: ControlParams) -> Self:
+        return cls(params, collision_check(params), TurnGain())
+
+
+@dataclass(frozen=True)
+class ControllerParts(TurnParts):
+    """Parameters and stateful parts; built once for a set of parameters."""
+
+    steering: Steering
+
+    @classmethod
+    def of(cls, params: ControlParams) -> Self:
+        check = collision_check(params)
+        return cls(params, check, TurnGain(), make_steering(params))
 
 
 def collision_check(params: ControlParams) -> CollisionCheck:

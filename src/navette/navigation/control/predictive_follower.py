@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Footprint, Pose2, advanced
+from navette.geometry import ACKERMANN, Footprint, Pose2, advanced
 from navette.navigation.control.command_gate import CommandGate
-from navette.navigation.control.controller_parts import collision_check
+from navette.navigation.control.controller_parts import TurnParts
 from navette.navigation.control.limits import (
     NO_CAP,
     STOP,
@@ -33,6 +33,7 @@ from navette.navigation.control.rollouts import (
     LocalField,
     PathWindow,
 )
+from navette.navigation.control.rotate import TurnInPlace
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import (
     NO_DISCS,
@@ -49,7 +50,8 @@ _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
 _BLOCKED_SCALE = 0.1
 _BODY_REACH_M = 1.0  # of the robot and the clearance that it keeps
 _BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
-# Rest of the path, turns included, and heading error at which the end is reached.
+# Rest of the path, turns included, at which its end is reached, and the heading error
+# there of a drive that cannot turn in place.
 _END_M = 0.15
 _END_YAW_RAD = 0.08
 
@@ -77,7 +79,8 @@ class PredictiveFollower:
 
     def __init__(self, params: ControlParams) -> None:
         self._params = params
-        self._collision = collision_check(params)
+        self._parts = TurnParts.of(params)
+        self._collision = self._parts.collision
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._calm = _Mode.of(params, self._body, swerves=False)
@@ -92,6 +95,7 @@ class PredictiveFollower:
         """Drop the path and stop at once; ``rest`` is the state to report."""
         self._path: PathWindow | None = None
         self._at = 0
+        self._last_turn: TurnInPlace | None = None
         self._rest: ControlState | None = rest
         self._last: VelocityCommand | None = None
         self._clearance = math.inf
@@ -140,6 +144,7 @@ class PredictiveFollower:
             self.reset()
         self._path = _window(poses)
         self._at = 0
+        self._last_turn = None
         self._rest = None
         self._last, self._clearance = last, clearance
 
@@ -184,7 +189,9 @@ class PredictiveFollower:
             inputs.speed, inputs.turn_rate, inputs.side_speed
         )
         if self._arrived(self._path, inputs):
-            return self._come_to_rest(last, dt)
+            turning = self._turn_to_end(self._path, inputs, last, dt)
+            return turning or self._come_to_rest(last, dt)
+        self._last_turn = None
         discs = self._near_discs(inputs.pose)
         self._choose_mode(self._evasive if len(discs) else self._calm)
         params = self._mode.params
@@ -221,6 +228,34 @@ class PredictiveFollower:
         if mode is not self._mode:
             mode.mppi.continue_from(self._mode.mppi)
             self._mode = mode
+
+    def _turn_to_end(
+        self,
+        path: PathWindow,
+        inputs: FollowerInputs,
+        last: VelocityCommand,
+        dt: float,
+    ) -> FollowerOutput | None:
+        """Turn in place to the heading at the end, more exactly than samples do.
+
+        None when the heading is reached or none is asked for.
+        """
+        params = self._params
+        if path.direction[-1] != 0 or params.drive == ACKERMANN:
+            return None
+        if self._last_turn is None:
+            end = math.atan2(path.sin[-1], path.cos[-1])
+            self._last_turn = TurnInPlace(end, 0.0, self._parts, both_directions=False)
+        decision = self._last_turn.step(inputs)
+        if decision is None:
+            return None
+        last = clamp(last, params)
+        if decision.brakes:
+            return self._emit(brake(last, params, dt), decision.state)
+        self._parts.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
+        command = approach(last, decision.command, params, dt)
+        eased = self._mode.gate.eased(command, inputs.ages)
+        return self._keep_clear(inputs.pose, eased)
 
     def _come_to_rest(self, last: VelocityCommand, dt: float) -> FollowerOutput:
         """Brake at the end of the path; the path ends at rest."""
@@ -287,9 +322,12 @@ class PredictiveFollower:
         if off > self._params.goal_tolerance_m or left > _END_M:
             return False
         c, s = math.cos(inputs.pose.yaw), math.sin(inputs.pose.yaw)
-        # A path that ends with a turn in place ends with a heading asked for.
+        # A path that ends with a turn in place ends with a heading asked for; others
+        # have the least turn left within ``_END_M``.
+        if path.direction[-1] != 0 or self._params.drive != ACKERMANN:
+            return True
         turned = c * path.cos[-1] + s * path.sin[-1]
-        return bool(path.direction[-1] != 0 or turned >= math.cos(_END_YAW_RAD))
+        return bool(turned >= math.cos(_END_YAW_RAD))
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         self._mode.mppi.reset()

@@ -3,7 +3,7 @@
 import math
 
 from navette.geometry import angle_difference, wrap_angle
-from navette.navigation.control.controller_parts import ControllerParts
+from navette.navigation.control.controller_parts import TurnParts
 from navette.navigation.control.limits import STOP, VelocityCommand
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import FollowerInputs, StepDecision
@@ -73,7 +73,7 @@ class TurnInPlace:
         self,
         target: float,
         planned: float,
-        parts: ControllerParts,
+        parts: TurnParts,
         *,
         both_directions: bool = True,
     ) -> None:

@@ -18,6 +18,8 @@ _LEAST_M, _LEAST_RAD = 0.02, 0.1
 _AWAY_M, _AWAY_RAD = 0.3, 1.0
 # … or after this time.
 _AGAIN_S = 10.0
+# Slower than this it does not push: a turn of sampled commands drifts as much.
+_DRIFT_MPS = 0.02
 
 
 class _Step(NamedTuple):
@@ -120,7 +122,8 @@ class StallMonitor:
         given = _Motion(*command)
         if bumped.along(bumped) == 0.0:
             return given.along(given) == 0.0 and given.turn_rate * bumped.turn_rate > 0
-        return given.along(bumped) > 0.0
+        towards = given.along(bumped) / math.sqrt(bumped.along(bumped))
+        return towards > _DRIFT_MPS
 
     def _commanded_all_along(
         self, wanted: _Motion, given: _Motion, dt: float, delay_s: float

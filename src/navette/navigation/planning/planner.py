@@ -212,7 +212,7 @@ class Planner:
         return self._planned(goal, poses, margin, 0)
 
     def _plan_or_squeeze(self, start: Pose2, goal: Goal) -> Plan:
-        quick = self.params.max_expansions // _QUICK_SHARE
+        quick = self._quick
         plan = self._plan_with(
             self.params.clearance_margin_m, start, goal, max_expansions=quick
         )
@@ -225,6 +225,16 @@ class Planner:
             worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
             plan = squeezed if squeezed.outcome.has_path and worth else plan
         return plan if plan.outcome.has_path else self._look_closer(start, goal, plan)
+
+    @property
+    def _quick(self) -> int:
+        """Budget of a search before the proof that there is no path.
+
+        The proof is about bodies that turn in place: a drive that does not needs
+        longer searches.
+        """
+        most = self.params.max_expansions
+        return most // _QUICK_SHARE if self.params.turns_in_place else most
 
     @property
     def _tight_m(self) -> float:
@@ -249,7 +259,7 @@ class Planner:
         slack = closer.spec.resolution
         margin = self._margin_from(start)
         body = BodyShape.of(self.footprint, slack)
-        quick = self.params.max_expansions // _QUICK_SHARE
+        quick = self._quick
         found = self._on_close_map(closer, body.through_gaps(slack))._plan_with(
             margin, start, goal, max_expansions=quick
         )

@@ -79,6 +79,7 @@ def test_the_same_motion_is_forbidden_until_the_robot_is_elsewhere() -> None:
     assert monitor.forbids((0.1, 0.3), HERE)
     assert not monitor.forbids((-0.1, 0.0), HERE)
     assert not monitor.forbids((0.0, 1.0), HERE)
+    assert not monitor.forbids((0.01, -0.1), HERE), "a turn that drifts"
     assert monitor.forbids(AHEAD, Pose2(-0.1, 0.0, 0.0))
     assert not monitor.forbids(AHEAD, Pose2(-0.5, 0.0, 0.0))
     assert not monitor.forbids(AHEAD, HERE)

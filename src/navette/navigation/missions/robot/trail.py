@@ -3,10 +3,12 @@
 import math
 from collections import deque
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, angle_difference
 
 _SPACING_M = 0.05
 _KEPT_M = 5.0
+# Heading error up to which a pose is on the way back along the trail.
+_BACK_RAD = 1.0
 
 
 class DrivenTrail:
@@ -16,9 +18,15 @@ class DrivenTrail:
         self._poses: deque[Pose2] = deque(maxlen=round(_KEPT_M / _SPACING_M))
 
     def add(self, pose: Pose2) -> None:
-        """Note a pose; a jump starts the trail again."""
+        """Note a pose; a jump starts the trail again.
+
+        Backing up along the trail shortens it: the way back from there does not lead
+        forward again to where the robot turned back.
+        """
+        while self._has_backed_up(pose):
+            self._poses.pop()
         if self._poses:
-            moved = math.dist((pose.x, pose.y), (self._poses[-1].x, self._poses[-1].y))
+            moved = self._poses[-1].distance_to(pose)
             if moved < _SPACING_M:
                 return
             if moved > 20 * _SPACING_M:
@@ -41,6 +49,15 @@ class DrivenTrail:
             if length >= distance_m:
                 break
         return poses if len(poses) > 1 else []
+
+    def _has_backed_up(self, pose: Pose2) -> bool:
+        """Return whether a pose is nearer to the last but one than the last is."""
+        if len(self._poses) < 2:
+            return False
+        before, last = self._poses[-2], self._poses[-1]
+        turned = abs(angle_difference(pose.yaw, before.yaw))
+        nearer = before.distance_to(pose) < before.distance_to(last)
+        return nearer and turned < _BACK_RAD
 
     def clear(self) -> None:
         self._poses.clear()
