@@ -24,6 +24,7 @@ from navette.runtime import Context, Executor, Node, Stopwatch
 from navette.runtime.qos import QoSDurabilityPolicy, QoSProfile
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.slow,
     pytest.mark.skipif(os.name == "nt", reason="signals and limits of POSIX"),
 ]

@@ -12,6 +12,8 @@ from fleet import Fleet
 
 from free_ports import free_endpoint
 
+pytestmark = pytest.mark.long
+
 DRIVE = Path(__file__).parents[2] / "examples" / "data" / "drive.mcap"
 DISTANCE = "/odom_integrator/distance"
 

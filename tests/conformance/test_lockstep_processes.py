@@ -14,6 +14,7 @@ from navette.msgs import deserialize
 from navette.msgs.nav_msgs.msg import Odometry
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.slow,
     pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
 ]
@@ -62,7 +63,6 @@ def drive(folder: Path) -> bytes:
     return bag.read_bytes()
 
 
-@pytest.mark.long
 def test_two_runs_of_the_split_stack_produce_the_same_bag(tmp_path: Path) -> None:
     """Byte for byte, including /rosout; and the robot reaches the goal."""
     first = drive(tmp_path / "first")

@@ -25,6 +25,8 @@ sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))
 
 from viewer_harness import Client
 
+pytestmark = pytest.mark.long
+
 S = 1_000_000_000
 RANGE = 100 * S + 5, 160 * S + 7
 

@@ -18,6 +18,8 @@ sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))
 
 from viewer_harness import Program
 
+pytestmark = pytest.mark.long
+
 WIDTH, HEIGHT, STEP, PADDING = 900, 16, 23, 11
 
 

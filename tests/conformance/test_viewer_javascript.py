@@ -26,6 +26,8 @@ sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))
 
 from viewer_harness import Program  # noqa: E402 - from the unit tests' folder
 
+pytestmark = pytest.mark.long
+
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 TREE = """{o} Drive [*]
     --> Follow [*] -- 3 m

@@ -12,6 +12,8 @@ from navette.msgs.std_msgs.msg import Empty
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.runtime import Context, Node
 
+pytestmark = pytest.mark.long
+
 TRIES = 20
 #: On a machine that runs other tests; the figure is measured by benchmarks/takeover.py.
 LATEST_MS = 1000.0

@@ -15,6 +15,8 @@ from navette.sim import Scene, World
 
 from .conftest import MakeSimulation
 
+pytestmark = pytest.mark.long
+
 RACECAR_CURVATURE = math.tan(0.41) / 0.3302
 
 

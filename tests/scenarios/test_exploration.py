@@ -9,7 +9,7 @@ from navette.sim import World
 from .conftest import MakeSimulation
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_rooms_are_mapped(simulate: MakeSimulation) -> None:
     world = World("two rooms").add_walls((9.0, 6.0))
     # A wall between the rooms with a door of 2 m.

@@ -16,6 +16,8 @@ from navette.bench.runner import run_trials
 from navette.bench.trial import Trial, TrialResult
 from navette.errors import NetworkError
 
+pytestmark = pytest.mark.long
+
 WORKERS = 2
 TRIALS = [
     Trial(

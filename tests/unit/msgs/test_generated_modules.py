@@ -82,7 +82,7 @@ def mypy(path: Path, code: str) -> str:
     return done.stdout + done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stubs_satisfy_a_users_strict_mypy(tmp_path: Path) -> None:
     stub = generate.ROOT / "std_msgs" / "msg.pyi"
     assert stub.is_file(), "run: python -m navette.msgs.generate"

@@ -1,6 +1,7 @@
 """Obstacles that moved away at a distance, and thin posts that beams miss."""
 
 import numpy as np
+import pytest
 
 from navette.geometry import Pose2
 from navette.navigation.costmap import CostmapParams, PlanarScan, ScanCostmap
@@ -59,6 +60,7 @@ def test_a_box_that_crossed_the_room_leaves_no_trail_beyond_the_erase_range() ->
     assert lethal_near(memory, 2.7, 7.0, 0.4)
 
 
+@pytest.mark.long
 def test_thin_posts_stay_at_every_range() -> None:
     memory = MapMemory(MapMemoryParams(resolution_m=0.05, size_m=24.0))
     where = [(r, a) for r in (2.5, 4.5, 6.5, 8.5) for a in np.arange(0.1, 6.2, 0.35)]
