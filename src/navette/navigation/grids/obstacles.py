@@ -13,6 +13,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids.alignment import placed
 from navette.navigation.grids.hit_points import HitPoints
+from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.spec import UNKNOWN, GridSpec
 from navette.navigation.grids.sub_cells import (
@@ -82,6 +83,7 @@ class ObstacleTracker:
     def reset(self) -> None:
         """Forget all costmaps and the map."""
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._seen: Layer | None = None  # what any map has shown
         self._map_ns = 0
         self._map_masks: tuple[int, Masks] | None = None  # of the map with this stamp
         self._map_hits, self._hits = HitPoints(), HitPoints()
@@ -102,6 +104,7 @@ class ObstacleTracker:
         """
         self._map = grid_from_message(msg)
         self._map_ns = _stamp_ns(msg)
+        self._seen = _seen_also(Layer(*self._map), self._seen)
 
     def receive_points(self, msg: PointCloud2) -> None:
         """Use the points for the costmap with the same stamp.
@@ -184,8 +187,11 @@ class ObstacleTracker:
     def _unseen(
         self, here: Layer, around: Pose2, reach_m: float
     ) -> NDArray[np.float64]:
-        """Return the cells near the body that neither map nor costmap has seen."""
-        layers = (here,) if self._map is None else (Layer(*self._map), here)
+        """Return the cells near the body that neither a map nor the costmap has seen.
+
+        What a request has cleared from the map has been seen nevertheless.
+        """
+        layers = (here,) if self._seen is None else (self._seen, here)
         first = self._poses.first
         assert first is not None, "the pose is known"
         start = StartArea.of(self._footprint, first, self._hand_m)
@@ -204,6 +210,18 @@ class ObstacleTracker:
         stamp = msg.header.stamp
         map_T_base = self._poses.predicted_at(stamp.sec * 1_000_000_000 + stamp.nanosec)
         return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+
+
+def _seen_also(now: Layer, before: Layer | None) -> Layer:
+    """Return a layer whose cells are known where they are in one of two."""
+    if before is None:
+        return now
+    cells = now.cells.copy()
+    if before.spec == now.spec:
+        np.copyto(cells, before.cells, where=cells == UNKNOWN)
+    else:
+        merge(cells, now.spec, before.cells, before.spec)
+    return Layer(cells, now.spec)
 
 
 def _stamp_ns(msg: OccupancyGrid) -> int:

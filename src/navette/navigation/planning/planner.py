@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Footprint, Pose2
+from navette.geometry import OMNI, Footprint, Pose2
 from navette.navigation.grids import (
     NO_DISCS,
     GridSpec,
@@ -358,6 +358,8 @@ class Planner:
             route = self.router.route(grid, self.body, start, end, goal.yaw)
             assert route is not None, "the end was chosen among reachable cells"
         fitting = self._cut_to_fit(grid, start, goal, route)
+        if self.params.drive == OMNI and margin_m < self.params.clearance_margin_m:
+            fitting = self._held(grid, start, goal, fitting)
         if fitting is not None and not self._ends_cramped(grid, fitting):
             return self._planned(goal, fitting, margin_m, 0)
         detour = DetourPlanner(
@@ -372,6 +374,23 @@ class Planner:
             why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
             return Plan(why, expansions=detour.expansions)
         return self._planned(goal, poses, margin_m, detour.expansions)
+
+    def _held(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal, route: Poses | None
+    ) -> Poses | None:
+        """Return the route driven without turning, if the body fits and it costs less.
+
+        An omnidirectional robot need not turn where there is hardly room for it.
+        """
+        if route is None:
+            return None
+        poses = np.column_stack([route[:, :2], np.full(len(route), start.yaw)])
+        poses = poses[np.append(True, np.any(np.diff(poses[:, :2], axis=0), axis=1))]
+        if goal.yaw is not None:
+            x, y, yaw = poses[-1].tolist()
+            poses = np.concatenate([poses, turn_in_place(x, y, yaw, goal.yaw)])
+        fits = check_path(poses, grid, self.body).first_bad is None
+        return poses if fits and self.cost_of(poses) < self.cost_of(route) else route
 
     def _unseen(self, start: Pose2) -> NDArray[np.uint8]:
         """Return (H, W) 1 for the cells that the body does not enter in reverse."""
