@@ -33,6 +33,8 @@ from navette.sim.occupancy_map import read_map
 from navette.sim.xml_tree import parse_xml
 from navette.untrusted.yaml_input import load_yaml
 
+pytestmark = pytest.mark.long
+
 MUTANTS = 40
 _MOST_PLAYED = 5000
 

@@ -18,6 +18,8 @@ from navette.msgs.rcl_interfaces.srv import SetParameters
 from navette.runtime import Node, Parameter
 from navette.testing import GraphHarness
 
+pytestmark = pytest.mark.long
+
 _INPUTS = 120
 _REQUESTS = 60
 #: Of the services that every node has: parameters, types, action bookkeeping.

@@ -30,6 +30,8 @@ from viewer_harness import (
     raw_frame,
 )
 
+pytestmark = pytest.mark.long
+
 _FRAMES = 3000
 _CONNECTIONS = 150
 _BATCHES, _BATCH = 10, 30  # of one client
