@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import NamedTuple
 from unittest.mock import patch
 
@@ -34,7 +34,7 @@ _JOINING = (
 
 # Imported now: under a test that replaces is_terminal, they would keep the replacement.
 for _name in _JOINING:
-    import_module(f"navette.cli.{_name}")
+    resolve_name(f"navette.cli.{_name}")
 
 
 class Done(NamedTuple):
