@@ -1,0 +1,1 @@
+"""Interfaces of ros_gz_interfaces."""

@@ -1,0 +1,1 @@
+"""Interfaces of test_msgs."""

@@ -1,0 +1,1 @@
+"""Interfaces of turtlebot3_msgs."""

@@ -1,0 +1,1 @@
+"""Interfaces of tutorial_interfaces."""
