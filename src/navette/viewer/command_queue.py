@@ -7,6 +7,7 @@ delay neither the robot nor the commands of other clients.
 
 import itertools
 import threading
+import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 
@@ -28,6 +29,7 @@ class CommandQueue:
         run_soon: runs a function on the executor's thread.
         run_later: runs a function on the socket thread after a delay in seconds.
         now_s: monotonic wall time.
+        cpu_s: CPU time of the calling thread: waiting for the interpreter is not work.
     """
 
     def __init__(
@@ -35,8 +37,10 @@ class CommandQueue:
         run_soon: Callable[[Command], None],
         run_later: Callable[[float, Command], None],
         now_s: Callable[[], float],
+        *,
+        cpu_s: Callable[[], float] = time.thread_time,
     ) -> None:
-        self._run_soon, self._run_later, self._now_s = run_soon, run_later, now_s
+        self._run_soon, self._run_later, self._cpu_s = run_soon, run_later, cpu_s
         self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}
         self._turns: deque[Hashable] = deque()
         self._lock = threading.Lock()
@@ -67,14 +71,14 @@ class CommandQueue:
 
     def _run_slice(self) -> None:
         """Run commands for a short time, then let other callbacks run."""
-        begin_s = self._now_s()
+        begin_s = self._cpu_s()
         while (command := self._next()) is not None:
             command()
-            used_s = self._now_s() - begin_s
+            used_s = self._cpu_s() - begin_s
             if used_s >= _SLICE_S:
                 break
         else:
-            used_s = self._now_s() - begin_s
+            used_s = self._cpu_s() - begin_s
         self._budget.take(used_s)
         with self._lock:
             self._is_scheduled = bool(self._turns)

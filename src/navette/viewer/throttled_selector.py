@@ -7,6 +7,7 @@ their sum, whatever the work is (handshakes, pings, parsing, encryption).
 
 import selectors
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -16,13 +17,15 @@ from navette.viewer.token_bucket import TokenBucket
 class ThrottledSelector(selectors.DefaultSelector):
     """Selector that sleeps while its thread has worked more than its share.
 
-    Work is wall time outside :meth:`select`, not CPU time: on a machine that is short
-    of CPU time, the thread leaves most of what the process receives to other threads.
+    Work is CPU time of the thread, not wall time outside :meth:`select`: a thread that
+    waits for the interpreter or for a core delays no node, and an operator's command
+    behind it must not wait for the rest of a delay that others caused.
 
     Args:
         share: seconds of work per second.
         burst_s: work that may be done at once.
         now_s: monotonic wall time.
+        cpu_s: CPU time of the calling thread.
     """
 
     def __init__(
@@ -31,20 +34,22 @@ class ThrottledSelector(selectors.DefaultSelector):
         burst_s: float,
         now_s: Callable[[], float],
         *,
+        cpu_s: Callable[[], float] = time.thread_time,
         sleep: Callable[[float], object] | None = None,
     ) -> None:
         super().__init__()
         self._bucket = TokenBucket(share, burst_s, now_s)
-        self._now_s = now_s
+        self._cpu_s = cpu_s
         self._sleep = sleep or threading.Event().wait
-        self._selected_s = now_s()
+        self._selected_s: float | None = None  # set in the thread whose time counts
 
     def select(self, timeout: float | None = None) -> Any:
-        self._bucket.take(self._now_s() - self._selected_s)
+        if self._selected_s is not None:
+            self._bucket.take(self._cpu_s() - self._selected_s)
         wait_s = self._bucket.wait_s()
         if wait_s:
             self._sleep(wait_s)
             timeout = 0.0
         events = super().select(timeout)
-        self._selected_s = self._now_s()
+        self._selected_s = self._cpu_s()
         return events

@@ -60,25 +60,43 @@ def test_a_thread_that_works_more_than_its_share_sleeps(time: Time) -> None:
         time.advance(seconds)
         selector.select(0.0)
 
-    with ThrottledSelector(0.25, 0.1, time, sleep=sleep) as selector:
+    with ThrottledSelector(0.25, 0.1, time, cpu_s=worked, sleep=sleep) as selector:
         for work_s in (0.05, 0.02, 1.0, 0.001, 0.3) * 20:
             work(selector, work_s)
             assert worked.now_s <= 0.1 + 0.25 * time.now_s + 1e-9
         assert slept.now_s > 0
-    with ThrottledSelector(0.25, 0.1, time, sleep=sleep) as selector:
+    with ThrottledSelector(0.25, 0.1, time, cpu_s=worked, sleep=sleep) as selector:
         before_s = slept.now_s
         work(selector, 0.09)
         assert slept.now_s == before_s
 
 
+def test_a_thread_that_waits_for_a_core_or_the_interpreter_does_not_sleep(
+    time: Time,
+) -> None:
+    """The operator's command behind it must not wait even longer."""
+    worked, sleeps = Time(), list[float]()
+    with ThrottledSelector(
+        0.2, 0.05, time, cpu_s=worked, sleep=sleeps.append
+    ) as selector:
+        for _ in range(100):
+            time.advance(0.3)
+            worked.advance(0.001)
+            selector.select(0.0)
+    assert sleeps == []
+
+
 class Executor:
     """Runs scheduled functions one by one, and keeps delayed ones."""
 
-    def __init__(self, time: Time) -> None:
+    def __init__(self, time: Time, cpu: Time | None = None) -> None:
         self.ready: list[Callable[[], None]] = []
         self.later: list[tuple[float, Callable[[], None]]] = []
         self.queue = CommandQueue(
-            self.ready.append, lambda s, f: self.later.append((s, f)), time
+            self.ready.append,
+            lambda s, f: self.later.append((s, f)),
+            time,
+            cpu_s=cpu or time,
         )
 
     def turn(self) -> None:
@@ -123,6 +141,26 @@ def test_commands_use_a_tenth_of_the_executor_at_most(time: Time) -> None:
             time.advance(delay_s)
             function()
     assert used.now_s == pytest.approx(5.0)
+
+
+def test_commands_are_not_charged_for_what_other_threads_do(time: Time) -> None:
+    cpu, ran = Time(), list[int]()
+    executor = Executor(time, cpu)
+
+    def command(number: int) -> Callable[[], None]:
+        def run() -> None:
+            time.advance(0.2)
+            cpu.advance(0.0001)
+            ran.append(number)
+
+        return run
+
+    for number in range(50):
+        executor.queue.add("driver", command(number))
+    while executor.ready:
+        executor.turn()
+    assert ran == list(range(50))
+    assert executor.later == []
 
 
 def test_commands_of_a_lane_run_in_order_and_replace_their_like(time: Time) -> None:
