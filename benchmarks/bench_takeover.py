@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from navette.files.runs import stay_shared
 from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav2_msgs.action import ComputePathToPose
@@ -31,7 +32,6 @@ from navette.navigation.stack import RunOptions
 from navette.navigation.stack.simulation import Simulation
 from navette.runtime import Context, DurabilityPolicy, Executor, Node, QoSProfile
 from navette.runtime.action import ActionClient
-from navette.storage.runs import stay_shared
 
 LIMITS_MS = {"one process": 100, "zenoh": 150, "page": 100, "planning": 100}
 PAGE = Path(__file__).parents[1] / "tests/conformance/js/operator.mjs"

@@ -218,7 +218,7 @@ def test_every_parameter_record_is_checked() -> None:
         for path in SOURCE.rglob("params.py")
         if "param(" in path.read_text(encoding="utf-8")
     }
-    assert found - declared == {"navette/params.py"}
+    assert found <= declared
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=lambda each: each.__name__)

@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 import pytest
 from program_run import NAVETTE
 
-from navette.storage.runs import VARIABLE
-from navette.storage.runs.choice import NETWORK_VARIABLES
+from navette.files.runs import VARIABLE
+from navette.files.runs.choice import NETWORK_VARIABLES
 
 PROGRAM = Path(__file__).parent / "programs" / "patrol.py"
 EXPECTED = """\

@@ -15,14 +15,14 @@ from fleet import until
 
 from free_ports import free_port
 from navette import AsyncParameterClient, Context, Node, Parameter
+from navette.files.runs import VARIABLE, RunInfo, live_runs
+from navette.files.runs.choice import NETWORK_VARIABLES
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMessage
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Executor
-from navette.storage.runs import VARIABLE, RunInfo, live_runs
-from navette.storage.runs.choice import NETWORK_VARIABLES
 
 pytestmark = [
     pytest.mark.long,

@@ -26,12 +26,12 @@ from navette.bags.play.player import Player, PlayState
 from navette.bags.summary import summarise
 from navette.bags.writing import open_writer
 from navette.errors import NavetteError
+from navette.files.untrusted.yaml_input import load_yaml
 from navette.ros2.packages.launch.frontend import parse_launch_text
 from navette.ros2.workspace import read_manifest
 from navette.runtime import read_parameter_file
 from navette.sim.occupancy_map import read_map
 from navette.sim.xml_tree import parse_xml
-from navette.untrusted.yaml_input import load_yaml
 
 pytestmark = pytest.mark.long
 

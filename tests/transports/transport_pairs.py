@@ -10,8 +10,8 @@ from typing import Any
 import zenoh
 
 from free_ports import free_endpoint
+from navette.files.runs import PrivateRun
 from navette.runtime.clock import Stopwatch
-from navette.storage.runs import PrivateRun
 from navette.transports import (
     Encoded,
     Endpoint,

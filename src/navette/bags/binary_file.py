@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from navette.errors import DecodeError, FileFormatError
-from navette.untrusted.files import open_regular
+from navette.files.untrusted.files import open_regular
 
 _BLOCK = 1 << 20
 _MOST_PROBLEMS = 100

@@ -23,7 +23,7 @@ from navette.bags.compression import LARGEST, is_zstd, unpack_zstd_message
 from navette.bags.definitions import msg_text, ros2_name
 from navette.bags.qos import parse_qos
 from navette.errors import DecodeError, FileFormatError
-from navette.untrusted.files import open_regular
+from navette.files.untrusted.files import open_regular
 
 MAGIC = b"SQLite format 3\0"
 _SMALLEST_ROW = 16  # minimum bytes of a row; bounds the number of rows

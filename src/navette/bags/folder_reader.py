@@ -20,9 +20,14 @@ from navette.bags.bag import (
 )
 from navette.bags.qos import parse_qos
 from navette.errors import FileFormatError
-from navette.untrusted.budget import METADATA as METADATA_BUDGET
-from navette.untrusted.files import open_regular
-from navette.untrusted.yaml_input import BoundedLoader, line_of, load_yaml, problem_of
+from navette.files.untrusted.budget import METADATA as METADATA_BUDGET
+from navette.files.untrusted.files import open_regular
+from navette.files.untrusted.yaml_input import (
+    BoundedLoader,
+    line_of,
+    load_yaml,
+    problem_of,
+)
 
 METADATA = "metadata.yaml"
 _AnyMessage = TypeVar("_AnyMessage", BagMessage, RecordedMessage)

@@ -16,7 +16,7 @@ from navette.bags.mcap_reader import McapReader
 from navette.bags.mcap_records import MAGIC as MCAP_MAGIC
 from navette.bags.ros1_reader import Ros1Reader
 from navette.errors import FileFormatError
-from navette.untrusted.files import open_regular
+from navette.files.untrusted.files import open_regular
 
 SUFFIXES = (".mcap", ".bag", ".db3")
 PACKED = ".zstd"

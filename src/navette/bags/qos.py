@@ -7,8 +7,8 @@ from typing import Any
 
 import yaml
 
-from navette.untrusted.budget import QOS
-from navette.untrusted.yaml_input import BoundedLoader, load_yaml
+from navette.files.untrusted.budget import QOS
+from navette.files.untrusted.yaml_input import BoundedLoader, load_yaml
 
 _INFINITE_NS = 2**63 - 1
 

@@ -13,9 +13,9 @@ from navette.cli.bench_options import BenchOptions, TrialOptions
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from navette.bench.report import ReportedRun
-    from navette.bench.statistics import MeasureDifference
-    from navette.bench.trial import Trial, TrialResult
+    from navette.navigation.bench.report import ReportedRun
+    from navette.navigation.bench.statistics import MeasureDifference
+    from navette.navigation.bench.trial import Trial, TrialResult
 
 FAILED = 1
 _DECISIVE = ("success", "score")  # a faster method may come closer to obstacles
@@ -23,8 +23,12 @@ _DECISIVE = ("success", "score")  # a faster method may come closer to obstacles
 
 def bench(options: BenchOptions) -> None:
     """Drive a set of worlds and measure success, contacts, time and score."""
-    from navette.bench.statistics import compare
-    from navette.bench.summary_text import comparison_text, plain, summary_text
+    from navette.navigation.bench.statistics import compare
+    from navette.navigation.bench.summary_text import (
+        comparison_text,
+        plain,
+        summary_text,
+    )
 
     runs = _runs(options)
     mine = runs[-1]
@@ -53,9 +57,15 @@ def bench(options: BenchOptions) -> None:
 
 def _runs(options: BenchOptions) -> list["ReportedRun"]:
     """Drive or read what is compared: the baseline first, mine last."""
-    from navette.bench.report import ReportedRun
-    from navette.bench.runner import read_results, run_trials
-    from navette.bench.variants import MINE, is_results_file, renamed, with_variant
+    from navette.navigation.bench.report import ReportedRun
+    from navette.navigation.bench.runner import read_results, run_trials
+    from navette.navigation.bench.variants import (
+        MINE,
+        is_results_file,
+        renamed,
+        with_variant,
+    )
+    from navette.ros2.names.node_classes import node_makers
 
     names = options.compare or []
     if len(names) > 2:
@@ -76,6 +86,7 @@ def _runs(options: BenchOptions) -> list["ReportedRun"]:
         jobs=options.jobs,
         results_file=options.results,
         cluster=options.dask,
+        load_nodes=node_makers,
     )
     found = _with_progress(results, trials)
     runs = []
@@ -91,8 +102,8 @@ def _runs(options: BenchOptions) -> list["ReportedRun"]:
 
 
 def _trials(options: TrialOptions) -> list["Trial"]:
-    from navette.bench.suites import suite_trials
-    from navette.bench.variants import absolute_place
+    from navette.navigation.bench.suites import suite_trials
+    from navette.navigation.bench.variants import absolute_place
 
     worlds = _numbers("--worlds", options.worlds)
     robot = None if options.robot is None else absolute_place(options.robot)
@@ -166,7 +177,7 @@ def _write_report(
     runs: Sequence["ReportedRun"],
     against: Sequence["MeasureDifference"],
 ) -> None:
-    from navette.bench.report import report_page
+    from navette.navigation.bench.report import report_page
 
     page = report_page(f"navette bench {suite}", runs, against)
     file.write_text(page, encoding="utf-8")

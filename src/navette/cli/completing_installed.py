@@ -105,6 +105,6 @@ def chosen(incomplete: str, names: Iterable[str]) -> list[str]:
 
 def complete_runs(incomplete: str) -> list[str]:
     """Complete the name of a private run of this user."""
-    from navette.storage.runs import live_runs
+    from navette.files.runs import live_runs
 
     return [run.name for run in live_runs() if run.name.startswith(incomplete)]

@@ -49,11 +49,11 @@ def launch(
     if forks:  # imports Navette while this process does
         forkserver.set_forkserver_preload(["navette.cli.launch_preload"])
         forkserver.ensure_running()
+    from navette.files.runs import pin_run
     from navette.ros2.launch import launch as run_launch
     from navette.ros2.launch import parse_launch_arguments, show_arguments
     from navette.ros2.launch.session import find_launch_file
     from navette.ros2.names import install
-    from navette.storage.runs import pin_run
     from navette.supervisor import ForkServer, ProcessManager
 
     install(instead_of_ros=on_navette)

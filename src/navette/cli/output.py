@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from navette.cli.session import fail
-from navette.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
+from navette.files.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
 
 
 def is_terminal() -> bool:

@@ -33,7 +33,7 @@ def from_yaml(text: str) -> Any:
     """
     import yaml
 
-    from navette.untrusted.yaml_input import load_yaml, problem_of
+    from navette.files.untrusted.yaml_input import load_yaml, problem_of
 
     try:
         return load_yaml(text)
@@ -49,9 +49,9 @@ def from_yaml_file(path: Path) -> list[Any]:
     """
     import yaml
 
-    from navette.untrusted.budget import DOCUMENT
-    from navette.untrusted.files import read_bounded
-    from navette.untrusted.yaml_input import load_all_yaml
+    from navette.files.untrusted.budget import DOCUMENT
+    from navette.files.untrusted.files import read_bounded
+    from navette.files.untrusted.yaml_input import load_all_yaml
 
     try:
         data = read_bounded(path, DOCUMENT)

@@ -49,7 +49,7 @@ def _generated(world: str) -> "Scene | None":
     """Return the world ``KIND:SEED`` of a suite of the benchmark; None for another."""
     if ":" not in world:
         return None
-    from navette.bench.run import scene_of
+    from navette.navigation.bench.run import scene_of
 
     return scene_of(world)
 

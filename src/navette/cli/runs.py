@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from navette.cli.output import aligned, is_terminal, show
-from navette.storage.runs import RunInfo
+from navette.files.runs import RunInfo
 
 _HEADS = ("RUN", "COMMAND", "WORLD", "PAGE", "PID")
 

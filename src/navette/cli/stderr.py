@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from navette.untrusted.escaping import escaped
+from navette.files.untrusted.escaping import escaped
 
 
 def note(text: str) -> None:

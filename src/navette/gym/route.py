@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec, distance_field
 from navette.navigation.planning.dijkstra import UNREACHED, cost_to_go
 from navette.navigation.planning.traversal import DIAGONAL, LETHAL, STRAIGHT, EdgeTable
-from navette.storage.kernels import kernel
 
 _CELL_M = 0.05
 _LARGEST = 1000  # cells along an edge; larger worlds have larger cells

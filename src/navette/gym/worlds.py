@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from navette.bench import dynabarn, moving_worlds
-from navette.bench.generators import GENERATORS, generate
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.gym.route import FreeSpace, Point
+from navette.navigation.bench import dynabarn, moving_worlds
+from navette.navigation.bench.generators import GENERATORS, generate
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.runtime.overrides import ParameterOverrides

@@ -9,6 +9,7 @@ from typing import Any
 from weakref import WeakSet
 
 from navette.errors import InvalidValueError
+from navette.files.runs import PrivateRun, RunInfo
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import RCLError
@@ -28,7 +29,6 @@ from navette.runtime.network import (
     join_network,
 )
 from navette.runtime.overrides import ParameterOverrides, ParameterOwner
-from navette.storage.runs import PrivateRun, RunInfo
 from navette.transports import InProcessTransport
 
 _log = logging.getLogger(__name__)

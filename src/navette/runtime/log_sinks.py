@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TextIO
 
 from navette.errors import FileFormatError
+from navette.files.untrusted.escaping import escaped_but_coloured
 from navette.runtime.log import LogRecord
 from navette.runtime.log_levels import LoggingSeverity
-from navette.untrusted.escaping import escaped_but_coloured
 
 _COLOURS = {
     LoggingSeverity.DEBUG: "\x1b[32m",

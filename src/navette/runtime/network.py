@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError
+from navette.files.runs import SHARED, RunInfo, chosen_run, named_run
+from navette.files.runs import VARIABLE as RUN_VARIABLE
 from navette.runtime.clock import ContextClock, PacedClock, VirtualClock
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock
-from navette.storage.runs import SHARED, RunInfo, chosen_run, named_run
-from navette.storage.runs import VARIABLE as RUN_VARIABLE
 
 _log = logging.getLogger(__name__)
 
@@ -88,7 +88,7 @@ def join_network(
         now_ns: returns this process's time.
         domain_id: default: that of the run, else of ``ROS_DOMAIN_ID``.
         own_run: the run of this process; None: the run that the program is to join, or
-            the shared network (:func:`navette.storage.runs.chosen_run`).
+            the shared network (:func:`navette.files.runs.chosen_run`).
         named_only: join a run only if ``NAVETTE_RUN`` names it.
         lock_step: the clock of a lock-step with other processes, if there is one.
 

@@ -9,9 +9,14 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError, ParameterError
-from navette.untrusted.budget import DOCUMENT
-from navette.untrusted.files import read_bounded
-from navette.untrusted.yaml_input import BoundedLoader, line_of, load_yaml, problem_of
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
+from navette.files.untrusted.yaml_input import (
+    BoundedLoader,
+    line_of,
+    load_yaml,
+    problem_of,
+)
 
 NodeParameters = list[tuple[str, dict[str, Any]]]
 """(node pattern such as ``/ns/node`` or ``/**``, flat name → value), in file order."""

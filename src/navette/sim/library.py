@@ -9,14 +9,14 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
-from navette.plugins import load_attribute
+from navette.files.untrusted.yaml_input import load_yaml
+from navette.params.plugins import load_attribute
 from navette.sim.mjcf import read_mjcf
 from navette.sim.occupancy_map import read_map
 from navette.sim.robot_file import model_of, read_robot_file
 from navette.sim.scene import Model, Scene
 from navette.sim.sdf import read_sdf
 from navette.sim.urdf import read_urdf_robot, read_urdf_world
-from navette.untrusted.yaml_input import load_yaml
 
 ROBOTS = "navette.robots"
 """Group of the entry points of robots."""

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.storage.kernels import kernel
+from navette.files.kernels import kernel
 
 PLANE, BOX, SPHERE, CYLINDER, CAPSULE, ELLIPSOID, OTHER = range(7)
 

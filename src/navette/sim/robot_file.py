@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError, ParameterError
+from navette.files.untrusted.yaml_input import load_yaml
 from navette.geometry import Transform3
 from navette.params import Params, param
 from navette.sim.scene import (
@@ -26,7 +27,6 @@ from navette.sim.scene import (
     SpeedLimits,
     Sphere,
 )
-from navette.untrusted.yaml_input import load_yaml
 
 _LEVEL = (0.0, 0.0, 0.0, 1.0)
 _QUARTER = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))  # the wheel's axis is y

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
+from navette.files.kernels import kernel
 from navette.sim.ray_kernels import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE
-from navette.storage.kernels import kernel
 
 _AMBIENT = 0.55
 _DIFFUSE = 0.45

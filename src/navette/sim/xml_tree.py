@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safe parsing of robot and world XML, with the line of every element.
 
-World files are untrusted: see :mod:`navette.untrusted`.
+World files are untrusted: see :mod:`navette.files.untrusted`.
 """
 
 import logging
@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from navette.errors import FileFormatError
-from navette.untrusted import xml_input
-from navette.untrusted.budget import SCENE
-from navette.untrusted.files import read_bounded
+from navette.files.untrusted import xml_input
+from navette.files.untrusted.budget import SCENE
+from navette.files.untrusted.files import read_bounded
 
 _log = logging.getLogger(__name__)
 

@@ -13,10 +13,10 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from navette.files.runs.locks import try_lock
 from navette.runtime import SystemClock
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
-from navette.storage.runs.locks import try_lock
 from navette.supervisor.client import accepts_connections
 from navette.supervisor.guard import end_processes_with
 from navette.supervisor.log_store import LogStore

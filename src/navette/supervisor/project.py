@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from navette.errors import FileFormatError, NavetteError
-from navette.storage.folders import can_write, private_folder, temporary_folder
-from navette.storage.runs.locks import is_locked
+from navette.files.folders import can_write, private_folder, temporary_folder
+from navette.files.runs.locks import is_locked
 
 FILE_NAME = "navette.yaml"
 INFO_NAME = "supervisor.json"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from navette.errors import DecodeError
-from navette.untrusted.budget import FRAME, BudgetError
+from navette.files.untrusted.budget import FRAME, BudgetError
 
 # In order of preference: the current app requests the first, older tools and the
 # published TypeScript client the second.

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.errors import DecodeError
+from navette.files.untrusted.budget import CLIENT_MESSAGE, BudgetMeter
 from navette.msgs import (
     Message,
     deserialize,
@@ -14,7 +15,6 @@ from navette.msgs import (
     get_interface,
     serialize,
 )
-from navette.untrusted.budget import CLIENT_MESSAGE, BudgetMeter
 from navette.viewer.frames import ClientChannel, check_containers
 
 _MAX_CONTAINERS = 10_000  # lists and objects of a JSON message

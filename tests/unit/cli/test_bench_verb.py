@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from navette.bench.trial import TrialResult
 from navette.cli.app import app
 from navette.errors import InvalidValueError
+from navette.navigation.bench.trial import TrialResult
 
 GOOD = TrialResult(
     suite="maze", name="maze-0", seed=0, outcome="reached", time_s=10.0, score=0.5,

@@ -16,7 +16,7 @@ from navette.cli.doctor.router_diagnosis import PortProbe, Refusal
 from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
-from navette.storage.runs import RunInfo
+from navette.files.runs import RunInfo
 from navette.transports import (
     DurabilityPolicy,
     Endpoint,

@@ -14,9 +14,9 @@ from navette.cli.session import fail
 from navette.cli.stderr import note
 from navette.cli.topic.echo_options import Style
 from navette.cli.topic.printing import text_of
+from navette.files.untrusted.escaping import escaped
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
-from navette.untrusted.escaping import escaped
 
 
 def strict(text: str) -> Any:

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navette.bench.run import run_trial
-from navette.bench.trial import Trial
 from navette.geometry import Pose2
 from navette.gym import NavigationEnvParams
+from navette.navigation.bench.run import run_trial
+from navette.navigation.bench.trial import Trial
 from navette.params import info_of
 
 ROOT = Path(__file__).parents[3]

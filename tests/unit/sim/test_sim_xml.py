@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from navette.errors import FileFormatError
+from navette.files.untrusted import Budget
 from navette.sim import xml_tree
 from navette.sim.xml_tree import parse_xml
-from navette.untrusted import Budget
 
 
 def _write(tmp_path: Path, text: str) -> Path:

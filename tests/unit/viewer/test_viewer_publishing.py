@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navette.errors import DecodeError, MessageError, NavetteError
+from navette.files.untrusted.budget import BudgetError
 from navette.msgs import serialize
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped, Twist
 from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.sensor_msgs.msg import Image, LaserScan
 from navette.msgs.std_msgs.msg import String
-from navette.untrusted.budget import BudgetError
 from navette.viewer.publishing import decode_message
 from navette.viewer.replies import ConnectionGraph
 from navette.viewer.session import Topic

@@ -25,6 +25,7 @@ from navette.bags.play.services import SERVICES
 from navette.bags.play.source import Source
 from navette.bags.qos import OfferedQos
 from navette.errors import NavetteError
+from navette.files.untrusted.escaping import escaped
 from navette.msgs.rosgraph_msgs.msg import Clock as ClockMsg
 from navette.runtime.context import Context
 from navette.runtime.events import Call
@@ -37,7 +38,6 @@ from navette.runtime.qos import (
     ReliabilityPolicy,
 )
 from navette.runtime.time import Duration, ns_to_stamp
-from navette.untrusted.escaping import escaped
 
 CLOCK_TOPIC = "/clock"
 _CLOCK_QOS = QoSProfile(depth=1)

@@ -10,7 +10,7 @@ from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED
 from navette.cli.stderr import note
-from navette.untrusted.escaping import escaped
+from navette.files.untrusted.escaping import escaped
 
 
 def info(

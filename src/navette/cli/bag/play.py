@@ -107,7 +107,7 @@ def play(
     ↑ and ↓ change the rate, q quits.
     """
     from navette.bags.play import PlayOptions
-    from navette.storage.runs import stay_shared
+    from navette.files.runs import stay_shared
 
     stay_shared()  # recorded sensor data and commands would disturb a run's robot
     options = PlayOptions(

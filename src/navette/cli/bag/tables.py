@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from navette.untrusted.escaping import escaped
+from navette.files.untrusted.escaping import escaped
 
 _WIDTH = 1000
 _LONGEST = 200

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from navette.cli.doctor.findings import Diagnosis, Rating, plural
 from navette.cli.doctor.processes import Process, listener
 from navette.cli.doctor.router_diagnosis import PortProbe, Refusal, probe, refusal
-from navette.storage.runs import RunInfo, chosen_run, live_runs
+from navette.files.runs import RunInfo, chosen_run, live_runs
 from navette.transports import EndpointKind
 
 if TYPE_CHECKING:

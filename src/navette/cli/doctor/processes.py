@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import psutil
 
-from navette.storage.runs import chosen_run, live_runs
+from navette.files.runs import chosen_run, live_runs
 
 _STOPPED = {psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP}
 # Programs that differ in one of these variables do not see each other.

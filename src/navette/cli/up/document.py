@@ -8,10 +8,10 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
+from navette.files.untrusted.yaml_input import line_of, problem_of
 from navette.runtime.parameter_files import RosLoader
-from navette.untrusted.budget import DOCUMENT
-from navette.untrusted.files import read_bounded
-from navette.untrusted.yaml_input import line_of, problem_of
 
 # Keys and list indices that lead to a value: ("services", "robot", "nodes", 0).
 Place = tuple[str | int, ...]

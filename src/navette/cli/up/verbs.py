@@ -12,7 +12,7 @@ from navette.cli.options import Argument, Option
 from navette.cli.output import show, show_json
 from navette.cli.stderr import note
 from navette.errors import NavetteError
-from navette.storage.runs import live_runs, stay_shared
+from navette.files.runs import live_runs, stay_shared
 
 if TYPE_CHECKING:  # imported when a verb is called: completion must be fast
     from navette.cli.up.config import ProjectConfig

@@ -14,11 +14,11 @@ from rich.table import Table
 from rich.text import Text
 
 from navette.cli.output import aligned, is_terminal, show
+from navette.files.untrusted.escaping import escaped_but_coloured
 from navette.supervisor.log_store import LogLine
 from navette.supervisor.service_config import ProcessState
 from navette.supervisor.status import ProcessStatus
 from navette.supervisor.usage import Usage
-from navette.untrusted.escaping import escaped_but_coloured
 
 _MARKS = {
     ProcessState.WAITING: ("·", "dim"),

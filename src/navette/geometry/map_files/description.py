@@ -8,10 +8,10 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
+from navette.files.untrusted.yaml_input import line_of, load_yaml, problem_of
 from navette.geometry import Pose2
-from navette.untrusted.budget import DOCUMENT
-from navette.untrusted.files import read_bounded
-from navette.untrusted.yaml_input import line_of, load_yaml, problem_of
 
 MAP_MODES = ("trinary", "scale", "raw")
 # Of map_server, for files without them.

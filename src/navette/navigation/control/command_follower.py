@@ -29,7 +29,7 @@ from navette.navigation.control.records import (
 from navette.navigation.control.speed_profile import approach_speed
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import NO_DISCS, NONE_UNSEEN, disc_outlines
-from navette.plugins import checked_array, own_call
+from navette.params.plugins import checked_array, own_call
 
 _AHEAD_M = 2.0  # how far along the path the robot may be beyond the last place
 _OBSTACLES_M = 6.0  # distance around the robot within which obstacles are given

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.storage.kernels import kernel
+from navette.files.kernels import kernel
 
 Array32 = NDArray[np.float32]
 

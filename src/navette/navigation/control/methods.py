@@ -1,6 +1,6 @@
 """The registry of controllers."""
 
-from navette.plugins import MethodRegistry
+from navette.params.plugins import MethodRegistry
 
 CONTROLLERS = MethodRegistry(
     "controller",

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.control.drive_models import (
     ACKERMANN,
@@ -19,7 +20,6 @@ from navette.navigation.control.drive_models import (
     TURN_RATE,
 )
 from navette.navigation.control.rollouts import move
-from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]

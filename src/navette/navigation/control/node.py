@@ -52,7 +52,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
-from navette.plugins import MethodFaultError
+from navette.params.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.input_period import InputPeriod
 from navette.runtime.stage.odometry import PoseTracker

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.control.drive_models import (
     ACKERMANN,
     CURVATURE,
@@ -24,7 +25,6 @@ from navette.navigation.control.drive_models import (
     advance_differential,
     advance_omni,
 )
-from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]

@@ -9,7 +9,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import DrivePiece
 from navette.navigation.control.piece_progress import PathPoint
 from navette.navigation.control.pure_pursuit import PurePursuit
-from navette.plugins import checked_array, own_call
+from navette.params.plugins import checked_array, own_call
 
 __all__ = ["CrossTrackPid", "PurePursuit", "Steering", "make_steering"]
 

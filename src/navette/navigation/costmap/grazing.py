@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.grids.checks import kernel_array
-from navette.storage.kernels import kernel
 
 
 def grazing_margins(

@@ -1,6 +1,6 @@
 """The registry of costmap methods."""
 
-from navette.plugins import MethodRegistry
+from navette.params.plugins import MethodRegistry
 
 COSTMAPS = MethodRegistry(
     "costmap",

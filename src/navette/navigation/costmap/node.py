@@ -24,7 +24,7 @@ from navette.navigation.grids import (
     points_to_message,
 )
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
-from navette.plugins import MethodFaultError
+from navette.params.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 

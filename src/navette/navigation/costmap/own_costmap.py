@@ -14,7 +14,7 @@ from navette.navigation.grids import (
     beam_directions,
     checked_cells,
 )
-from navette.plugins import own_call
+from navette.params.plugins import own_call
 
 
 class ScanArrays(NamedTuple):

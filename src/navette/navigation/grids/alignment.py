@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
-from navette.storage.kernels import kernel
 
 # Source coordinates along a row advance in fixed point: exact and fast.
 FRACTION_BITS = 32

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry import Footprint
 from navette.navigation.grids.checks import grid_array, kernel_array
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
-from navette.storage.kernels import kernel
 
 # Of a cell, in cells: an obstacle may fill its cell to the corners.
 HALF_DIAGONAL = math.sqrt(0.5)

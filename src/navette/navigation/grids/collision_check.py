@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids.exact_clearance import body_distance, signed_distance
-from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from navette.files.kernels import kernel
 from navette.navigation.grids.alignment import Affine, align, cell_at
 from navette.navigation.grids.checks import at_least, grid_array
 from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
-from navette.storage.kernels import kernel
 
 _ANY = -128  # least int8: every cell counts, unknown ones too
 

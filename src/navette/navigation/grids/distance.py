@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.navigation.grids.checks import at_least, kernel_array
-from navette.storage.kernels import kernel
 
 # Columns per block: a few registers that stay in the first-level cache.
 BLOCK = 64

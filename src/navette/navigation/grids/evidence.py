@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.navigation.grids.alignment import (
     Alignment,
     align,
@@ -17,7 +18,6 @@ from navette.navigation.grids.alignment import (
 )
 from navette.navigation.grids.checks import grid_array, output_array
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells, GridSpec
-from navette.storage.kernels import kernel
 
 LogOdds = NDArray[np.float32]
 

@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Footprint
 from navette.navigation.grids.clearance import HALF_DIAGONAL
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import SUB_CELLS, Masks
-from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.navigation.grids.checks import at_least, kernel_array
 from navette.navigation.grids.distance import (
     Scratch,
@@ -15,7 +16,6 @@ from navette.navigation.grids.distance import (
     row_squares,
 )
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells
-from navette.storage.kernels import kernel
 
 InflationMethod = Literal["linear", "exponential"]
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.grids.alignment import (
     Affine,
@@ -19,7 +20,6 @@ from navette.navigation.grids.alignment import (
 )
 from navette.navigation.grids.checks import grid_array, output_array
 from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
-from navette.storage.kernels import kernel
 
 MergeMode = Literal["overwrite", "max"]
 

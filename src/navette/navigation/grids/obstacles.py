@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
@@ -23,7 +24,6 @@ from navette.navigation.grids.sub_cells import (
     point_radius,
 )
 from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
-from navette.storage.kernels import kernel
 
 
 class RobotPoses(Protocol):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from navette.navigation.grids.spec import LETHAL, UNKNOWN, Cells
-from navette.plugins import MethodFaultError, checked_array
+from navette.params.plugins import MethodFaultError, checked_array
 
 
 def checked_cells(name: str, returned: Any, shape: tuple[int, int]) -> Cells:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.navigation.grids.checks import grid_array, kernel_array
 from navette.navigation.grids.spec import (
     FREE,
@@ -16,7 +17,6 @@ from navette.navigation.grids.spec import (
     GridSpec,
     grid_frame,
 )
-from navette.storage.kernels import kernel
 
 # Change of range per distance between neighbouring beams on a wall met at 10°.
 _STEEPEST = 1.0 / math.tan(math.radians(10.0))

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids.exact_clearance import (
     Outline,
@@ -17,7 +18,6 @@ from navette.navigation.grids.exact_clearance import (
     signed_distance,
 )
 from navette.navigation.grids.spec import UNKNOWN, GridSpec, grid_frame
-from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 

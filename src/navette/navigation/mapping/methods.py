@@ -1,6 +1,6 @@
 """The registry of mapping methods."""
 
-from navette.plugins import MethodRegistry
+from navette.params.plugins import MethodRegistry
 
 MAPPINGS = MethodRegistry(
     "mapping",

@@ -8,7 +8,7 @@ from navette.navigation.grids import UNKNOWN, GridSpec, checked_cells, merge
 from navette.navigation.grids.spec import Cells
 from navette.navigation.mapping.methods import MAPPINGS
 from navette.navigation.mapping.params import MapMemoryParams
-from navette.plugins import own_call
+from navette.params.plugins import own_call
 
 
 class UpdateMethod(Protocol):

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 from py_trees.common import Status
 
 from navette.errors import FileFormatError
+from navette.files.untrusted.files import open_regular
 from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import PoseStamped
 from navette.navigation.missions.sequence import (
@@ -29,7 +30,6 @@ from navette.navigation.missions.tree.paths import nearest_index, path_length_m
 from navette.navigation.missions.tree.robot_access import RobotAccess
 from navette.navigation.missions.tree.tree_file import TreeFile
 from navette.navigation.missions.tree_run import StatusChange, TreeRun
-from navette.untrusted.files import open_regular
 
 PREEMPTED_TEXT = "preempted by a newer goal"
 # A robot that does not stop within this time has another problem.

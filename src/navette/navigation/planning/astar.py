@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
@@ -29,7 +30,6 @@ from navette.navigation.planning.traversal import (
     SearchGrid,
     require_inside,
 )
-from navette.storage.kernels import kernel
 
 # A record per cell: stamp << 48 | g << 4 | closed << 3 | direction. The stamp decreases
 # with every query, so records of earlier queries compare as more expensive than any

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import GridSpec, make_outline, signed_distance
-from navette.storage.kernels import kernel
 
 _HEADINGS = 64
 _WITHIN = 5  # headings tried within one bin, its limits included

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
     Cell,
@@ -19,7 +20,6 @@ from navette.navigation.planning.traversal import (
     require_inside,
     steps_cost,
 )
-from navette.storage.kernels import kernel
 
 
 @PLANNERS.register("breadth_first")

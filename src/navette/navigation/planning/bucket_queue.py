@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.storage.kernels import kernel
+from navette.files.kernels import kernel
 
 USED, FREE, WAITING = 0, 1, 2
 _NEXT = 0x7FFFFFFF

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
@@ -26,7 +27,6 @@ from navette.navigation.planning.traversal import (
     SearchGrid,
     require_inside,
 )
-from navette.storage.kernels import kernel
 
 UNREACHED = 1 << 60
 """Cost to go of a cell without a path to a goal."""

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.grids import (
     Body,
     DistanceGrid,
@@ -26,7 +27,6 @@ from navette.navigation.planning.bucket_queue import (
     reserve,
 )
 from navette.navigation.planning.dijkstra import UNREACHED
-from navette.storage.kernels import kernel
 
 SHIFT = 10
 BUCKETS = 1 << 13

@@ -1,6 +1,6 @@
 """The registry of planners."""
 
-from navette.plugins import MethodRegistry
+from navette.params.plugins import MethodRegistry
 
 PLANNERS = MethodRegistry(
     "planner",

@@ -20,7 +20,7 @@ from navette.navigation.planning.path_shape import (
 )
 from navette.navigation.planning.planning_grid import PlanningGrid
 from navette.navigation.planning.traversal import LETHAL, Cell
-from navette.plugins import MethodFaultError, checked_array, own_call
+from navette.params.plugins import MethodFaultError, checked_array, own_call
 
 _FARTHEST_M = 1e8
 _SAME_PLACE_M = 1e-6

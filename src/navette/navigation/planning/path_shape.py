@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
-from navette.storage.kernels import kernel
 
 Poses = NDArray[np.float64]
 Points = NDArray[np.float64]

@@ -42,7 +42,7 @@ from navette.navigation.planning.planning_grid import (
     without_obstacles_in,
 )
 from navette.navigation.planning.route import GridRouter
-from navette.plugins import MethodFaultError
+from navette.params.plugins import MethodFaultError
 
 __all__ = ["Goal", "Plan", "Planner"]
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.navigation.planning.traversal import STRAIGHT, EdgeTable
-from navette.storage.kernels import kernel
 
 Points = NDArray[np.float64]
 

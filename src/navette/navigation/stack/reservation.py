@@ -5,6 +5,7 @@ import os
 from dataclasses import dataclass, replace
 
 from navette.errors import InvalidValueError, NetworkError, ParameterError
+from navette.files.runs import PrivateRun, live_runs, named_run, shares
 from navette.navigation.stack.options import RunOptions
 from navette.runtime import ContextClock
 from navette.runtime.network import (
@@ -13,7 +14,6 @@ from navette.runtime.network import (
     environment_domain,
 )
 from navette.runtime.overrides import ParameterOverrides
-from navette.storage.runs import PrivateRun, live_runs, named_run, shares
 from navette.viewer.access import scheme_of
 from navette.viewer.listening import Listeners, listen, port_of, url_of
 from navette.viewer.params import ViewerParams

@@ -7,6 +7,7 @@ from typing import Any
 
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
+from navette.files.runs import RunInfo
 from navette.msgs.topics import CLOCK
 from navette.navigation.stack.methods import method_parameters
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
@@ -28,7 +29,6 @@ from navette.runtime import (
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene
 from navette.sim.node import SimNode
-from navette.storage.runs import RunInfo
 from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
 from navette.viewer.params import ViewerParams

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
+from navette.files.runs import stay_shared
 from navette.runtime import Context, ContextClock, Node, PacedClock
 from navette.runtime.lockstep import Coordinator
 from navette.runtime.overrides import ParameterOverrides
-from navette.storage.runs import stay_shared
 
 if TYPE_CHECKING:
     from navette.navigation.stack.scene import ResolvedScene

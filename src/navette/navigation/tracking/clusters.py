@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.storage.kernels import kernel
+from navette.files.kernels import kernel
 
 Points = NDArray[np.float64]
 

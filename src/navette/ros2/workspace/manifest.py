@@ -6,9 +6,9 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from navette.errors import FileFormatError
-from navette.untrusted.budget import DOCUMENT
-from navette.untrusted.files import read_bounded
-from navette.untrusted.xml_input import parse_xml
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
+from navette.files.untrusted.xml_input import parse_xml
 
 FILE_NAME = "package.xml"
 _NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+", re.ASCII)

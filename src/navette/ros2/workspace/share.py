@@ -11,8 +11,8 @@ import shutil
 import tempfile
 from pathlib import Path, PurePosixPath
 
+from navette.files.folders import cache_folder
 from navette.ros2.workspace.setup_py import SetupPy, read_setup_py
-from navette.storage.folders import cache_folder
 
 
 def share_directory(name: str, folder: Path) -> Path:

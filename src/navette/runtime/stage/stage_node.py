@@ -16,7 +16,7 @@ from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.topics import StackTopic
 from navette.params import Params
-from navette.plugins import method_fields, own_fields, with_methods
+from navette.params.plugins import method_fields, own_fields, with_methods
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher

@@ -7,7 +7,7 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.params import Params, param
-from navette.plugins import MethodRegistry
+from navette.params.plugins import MethodRegistry
 from navette.runtime import Parameter, StageNode
 from navette.testing import GraphHarness
 

@@ -6,6 +6,7 @@ from typing import Any
 import yaml
 
 from navette.errors import InvalidValueError
+from navette.files.untrusted.yaml_input import load_yaml
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -13,7 +14,6 @@ from navette.ros2.packages.launch.launch_description_entity import (
     normalize_to_list_of_entities,
 )
 from navette.ros2.packages.launch.substitution import Parts
-from navette.untrusted.yaml_input import load_yaml
 
 _MOST = 10_000
 

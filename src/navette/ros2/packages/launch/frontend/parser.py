@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from navette.errors import FileFormatError, NavetteError
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.errors import InvalidLaunchFileError
 from navette.ros2.packages.launch.frontend.element import Element
@@ -15,8 +17,6 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
-from navette.untrusted.budget import DOCUMENT
-from navette.untrusted.files import read_bounded
 
 FORMATS: dict[str, Callable[[bytes, Path], Element]] = {
     ".xml": read_xml,

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from navette.files.untrusted.xml_input import parse_xml
 from navette.ros2.packages.launch.frontend.element import Element
-from navette.untrusted.xml_input import parse_xml
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,13 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError
+from navette.files.untrusted.yaml_input import (
+    compose_yaml,
+    line_of,
+    load_yaml,
+    problem_of,
+)
 from navette.ros2.packages.launch.frontend.element import Element
-from navette.untrusted.yaml_input import compose_yaml, line_of, load_yaml, problem_of
 
 _CHILDREN = "children"
 

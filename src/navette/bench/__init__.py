@@ -1,5 +1,0 @@
-"""``navette bench``: trials in worlds, their measures, statistics and report."""
-
-from navette.bench.trial import Trial, TrialResult
-
-__all__ = ["Trial", "TrialResult"]

@@ -1,0 +1,141 @@
+"""Run trials on all cores; finished ones are kept in a file and not run again."""
+
+import dataclasses
+import hashlib
+import json
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import FileFormatError
+from navette.navigation.bench.trial import Trial, TrialResult
+
+if TYPE_CHECKING:
+    from navette.navigation.bench.run import NodeLoader
+
+
+def run_trials(
+    trials: Sequence[Trial],
+    *,
+    jobs: int,
+    results_file: Path | None = None,
+    cluster: str | None = None,
+    load_nodes: "NodeLoader | None" = None,
+) -> Iterator[TrialResult]:
+    """Yield the result of every trial, finished ones of the file first.
+
+    Args:
+        trials: what to run.
+        jobs: number of processes.
+        results_file: one JSON object per line; results are appended as they arrive,
+            so that an interrupted benchmark continues.
+        cluster: address of a Dask scheduler, whose workers run the trials.
+        load_nodes: required for trials that replace nodes of the stack.
+
+    Raises:
+        FileFormatError: the file has other content.
+        NavetteError: invalid world, robot or parameter of a trial.
+    """
+    finished = {} if results_file is None else read_results(results_file)
+    waiting = []
+    for trial in trials:
+        key = trial_key(trial)
+        if key in finished:
+            yield dataclasses.replace(finished[key], variant=trial.variant)
+        else:
+            waiting.append(trial)
+    for trial, result in _run(waiting, jobs, cluster, load_nodes):
+        if results_file is not None:
+            row = {"key": trial_key(trial), **dataclasses.asdict(result)}
+            with results_file.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
+        yield result
+
+
+def _run(
+    trials: Sequence[Trial],
+    jobs: int,
+    cluster: str | None,
+    load_nodes: "NodeLoader | None",
+) -> Iterator[tuple[Trial, TrialResult]]:
+    if not trials:
+        return
+    if cluster is not None:
+        from navette.navigation.bench.cluster import run_on_cluster
+
+        yield from run_on_cluster(trials, cluster, load_nodes)
+        return
+    from navette.navigation.bench.run import run_trial
+
+    if jobs == 1 or len(trials) <= 1:
+        for trial in trials:
+            yield trial, run_trial(trial, load_nodes)
+        return
+    context = multiprocessing.get_context("forkserver")
+    with ProcessPoolExecutor(jobs, context) as pool:
+        running = {pool.submit(run_trial, each, load_nodes): each for each in trials}
+        try:
+            for future in as_completed(running):
+                yield running[future], future.result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def trial_key(trial: Trial) -> str:
+    """Return a name of the trial that changes with its values and its files.
+
+    The name of the variant does not change it: the drive is the same.
+    """
+    values = dataclasses.asdict(dataclasses.replace(trial, variant=""))
+    text = json.dumps(values, sort_keys=True, default=str)
+    text += "".join(_digest(file) for file in _files_of(trial))
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _files_of(trial: Trial) -> list[Path]:
+    """Return the files that determine a trial."""
+    names = [
+        *trial.methods.values(),
+        *trial.replacements.values(),
+        trial.world,
+        trial.robot or "",
+        *map(str, trial.params_files),
+    ]
+    paths = [Path(part) for name in names for part in (name, name.rpartition(":")[0])]
+    return [path for path in paths if path.suffix and path.is_file()]
+
+
+def _digest(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def read_results(file: Path) -> dict[str, TrialResult]:
+    """Return key → result of a results file; empty if there is no file.
+
+    Raises:
+        FileFormatError: a line is not a result; names file and line.
+    """
+    if not file.exists():
+        return {}
+    _drop_partial_line(file)
+    results = {}
+    with file.open(encoding="utf-8") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                row: dict[str, Any] = json.loads(line)
+                key = str(row.pop("key"))
+                results[key] = TrialResult(**row)
+            except (ValueError, KeyError, TypeError) as error:
+                raise FileFormatError(
+                    file, f"not a result of navette bench ({error})", number
+                ) from error
+    return results
+
+
+def _drop_partial_line(file: Path) -> None:
+    """Cut off a last line without an end: the program was killed while it wrote."""
+    content = file.read_bytes()
+    if content and not content.endswith(b"\n"):
+        file.write_bytes(content[: content.rfind(b"\n") + 1])

@@ -1,5 +1,0 @@
-"""Untrusted input: budgets, and bounded readers of YAML and XML."""
-
-from navette.untrusted.budget import Budget, BudgetError, BudgetMeter
-
-__all__ = ["Budget", "BudgetError", "BudgetMeter"]
