@@ -19,6 +19,7 @@ class WebRequest:
     origin: str | None
     authorization: str | None
     visitor: Visitor
+    encodings: str = ""
 
 
 class Gate:
@@ -51,10 +52,11 @@ class Gate:
         refused = self._policy.host_refusal(request.host)
         if refused:
             return refuse(403, refused)
-        if self._site.is_public(request.target):
-            return self._site.answer(request.method, request.target)
-        return self.refusal(request) or self._site.answer(
-            request.method, request.target
+        refused_login = None
+        if not self._site.is_public(request.target):
+            refused_login = self.refusal(request)
+        return refused_login or self._site.answer(
+            request.method, request.target, request.encodings
         )
 
     def refusal(self, request: WebRequest) -> HttpResponse | None:

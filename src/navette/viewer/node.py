@@ -50,6 +50,7 @@ from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
 from navette.viewer.listening import Listeners, listen
 from navette.viewer.node_monitor import NodeMonitor
+from navette.viewer.page_files import read_page
 from navette.viewer.parameter_requests import ParameterRequests
 from navette.viewer.params import ViewerParams
 from navette.viewer.playback import Playback
@@ -365,15 +366,13 @@ class ViewerNode(StageNode):
 
     def _make_server(self, listeners: Listeners | None) -> ViewerServer:
         params = self.params
-        data = importlib.resources.files("navette.viewer") / "data"
-        scripts = {
-            f"/{file.name}": file.read_bytes()
-            for file in data.iterdir()
-            if file.name.endswith(".js")
-        }
+        package = importlib.resources.files("navette.viewer")
+        files = dict(read_page(package / "data"))
+        files["/"] = files["/page.html"]
+        new_page = read_page(package / "page")
+        files |= {f"/page{path}": file for path, file in new_page.items()}
         site = Site(
-            (data / "page.html").read_bytes(),
-            scripts,
+            files,
             lambda: build_layout(*self._frames),
             self._health,
         )

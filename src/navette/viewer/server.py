@@ -195,6 +195,7 @@ class ViewerServer:
             headers.get("Origin"),
             headers.get("Authorization"),
             _visitor(connection),
+            headers.get("Accept-Encoding", ""),
         )
         if headers.get("Upgrade", "").lower() != "websocket":
             return _response(self._gate.page(asked))

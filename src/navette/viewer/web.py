@@ -7,11 +7,20 @@ from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import urlsplit
 
+from navette.viewer.page_files import PageFile
+
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 # Names that only a local network assigns; a page on the internet cannot have them.
 _LOCAL_SUFFIXES = (".localhost", ".local", ".lan", ".home.arpa", ".internal")
 
 PAGE_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; "
+    "img-src 'self' data: blob:; connect-src 'self' ws: wss:; manifest-src 'self'; "
+    "worker-src 'self'; frame-src blob:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
+)
+# Of the old page, until the new one replaces it.
+OLD_POLICY = (
     "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data:; connect-src 'self' ws: wss:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'"
@@ -90,54 +99,62 @@ def _is_address(name: str) -> bool:
 
 
 class Site:
-    """Serves ``/``, ``/layout.json``, ``/health`` and scripts; 404 for other paths.
+    """Serves the page's files, ``/layout.json`` and ``/health``; 404 for other paths.
 
     Args:
-        scripts: JavaScript of the page, by path.
+        files: the page by path.
     """
 
     def __init__(
         self,
-        page: bytes,
-        scripts: Mapping[str, bytes],
+        files: Mapping[str, PageFile],
         layout: Callable[[], Mapping[str, Any]],
         health: Callable[[], Mapping[str, Any]],
     ) -> None:
-        self._page = page
-        self._scripts = scripts
+        self._files = files
         self._layout = layout
         self._health = health
 
     def is_public(self, target: str) -> bool:
-        """Whether a path is the same for every program: the page and its scripts."""
-        path = target.partition("?")[0]
-        return path in ("/", "/index.html") or path in self._scripts
+        """Whether a path is the same for every program: a file of the page."""
+        return target.partition("?")[0] in self._files
 
-    def answer(self, method: str, target: str) -> HttpResponse:
+    def answer(self, method: str, target: str, encodings: str = "") -> HttpResponse:
+        """Return the response to a request.
+
+        Args:
+            encodings: the request's Accept-Encoding header.
+        """
         if method not in ("GET", "HEAD"):
             return refuse(405, f"method {method} is not allowed; use GET")
-        path = target.partition("?")[0]
-        if path in ("/", "/index.html"):
-            headers = {"Content-Security-Policy": PAGE_POLICY}
-            answer = HttpResponse(200, "text/html; charset=utf-8", self._page, headers)
-        elif path in self._scripts:
-            kind = "text/javascript; charset=utf-8"
-            answer = HttpResponse(200, kind, self._scripts[path])
-        elif path == "/layout.json":
-            download = 'attachment; filename="navette-layout.json"'
-            headers = {"Content-Disposition": download}
-            body = json.dumps(self._layout(), indent=2).encode()
-            answer = HttpResponse(200, "application/json", body, headers)
-        elif path == "/health":
-            body = json.dumps(self._health()).encode()
-            answer = HttpResponse(200, "application/json", body)
-        else:
-            answer = refuse(
-                404, f"nothing at {path!r:.120}; known: /, /layout.json, /health"
-            )
+        answer = self._answer(target.partition("?")[0], encodings)
         if method == "HEAD":
             return HttpResponse(answer.status, answer.content_type, b"", answer.headers)
         return answer
+
+    def _answer(self, path: str, encodings: str) -> HttpResponse:
+        if path in self._files:
+            return _file_response(path, self._files[path], encodings)
+        if path == "/layout.json":
+            download = 'attachment; filename="navette-layout.json"'
+            headers = {"Content-Disposition": download}
+            body = json.dumps(self._layout(), indent=2).encode()
+            return HttpResponse(200, "application/json", body, headers)
+        if path == "/health":
+            body = json.dumps(self._health()).encode()
+            return HttpResponse(200, "application/json", body)
+        return refuse(404, f"nothing at {path!r:.120}; known: /, /layout.json, /health")
+
+
+def _file_response(path: str, file: PageFile, encodings: str) -> HttpResponse:
+    headers = {}
+    if file.content_type.startswith("text/html"):
+        policy = PAGE_POLICY if path.startswith("/page/") else OLD_POLICY
+        headers["Content-Security-Policy"] = policy
+    if "gzip" in encodings and len(file.compressed) < len(file.body):
+        headers |= {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
+        return HttpResponse(200, file.content_type, file.compressed, headers)
+    return HttpResponse(200, file.content_type, file.body, headers)
 
 
 def refuse(status: int, reason: str) -> HttpResponse:

@@ -21,6 +21,7 @@ from navette.transports.certificates import create_keys
 from navette.viewer.access import Access, is_loopback, scheme_of
 from navette.viewer.gate import Gate, WebRequest
 from navette.viewer.login import Login, Visitor, new_token, token_of
+from navette.viewer.page_files import PageFile
 from navette.viewer.params import ViewerParams
 from navette.viewer.peer_user import is_trusted, owner_of, user_of
 from navette.viewer.web import AccessPolicy, Site
@@ -125,11 +126,14 @@ def test_tokens_are_in_the_address_or_a_header(
 # -- origins -------------------------------------------------------------------------
 
 
+PAGE = PageFile("text/html", b"page", b"page")
+
+
 def gate(notes: list[str]) -> Gate:
     return Gate(
         AccessPolicy("127.0.0.1", ("https://app.foxglove.dev",)),
         Login([TOKEN], Time()),
-        Site(b"page", {"/a.js": b"1"}, dict, lambda: {"status": "ok"}),
+        Site({"/": PAGE, "/a.js": PAGE}, dict, lambda: {"status": "ok"}),
         on_refused=notes.append,
         on_denied=lambda: notes.append("denied"),
     )

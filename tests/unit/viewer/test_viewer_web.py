@@ -1,5 +1,6 @@
 """Assets, HTTP responses and the access policy."""
 
+import gzip
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from navette.errors import ParameterError, UnknownNameError
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import WireParameter
 from navette.viewer.layout import build_layout
+from navette.viewer.page_files import PageFile, read_page
 from navette.viewer.parameters import from_wire, split_name, to_wire
 from navette.viewer.web import AccessPolicy, Site
 
@@ -99,9 +101,32 @@ def test_foreign_hosts_and_origins_are_refused(
         assert "allowed_" in refusal
 
 
+def test_the_page_has_all_files_below_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "index.html").write_text("<html>")
+    (tmp_path / "assets" / "a.js").write_text("1")
+    (tmp_path / "notes.bak").write_text("no")
+    files = read_page(tmp_path)
+    assert set(files) == {"/", "/index.html", "/assets/a.js"}
+    assert files["/assets/a.js"].content_type.startswith("text/javascript")
+    assert gzip.decompress(files["/"].compressed) == files["/"].body
+
+
+def test_a_file_is_compressed_for_clients_that_accept_it() -> None:
+    long = PageFile("text/javascript", b"1" * 1000, gzip.compress(b"1" * 1000))
+    site = Site({"/a.js": long}, dict, dict)
+    plain = site.answer("GET", "/a.js")
+    packed = site.answer("GET", "/a.js", "br, gzip")
+    assert "Content-Encoding" not in plain.headers
+    assert packed.headers["Content-Encoding"] == "gzip"
+    assert gzip.decompress(packed.body) == plain.body
+
+
 def test_the_site_has_three_pages_and_its_scripts() -> None:
+    html = PageFile("text/html", b"<html>", b"")
+    script = PageFile("text/javascript", b"1", b"12")
     site = Site(
-        b"<html>", {"/a.js": b"1"}, lambda: {"layout": 1}, lambda: {"status": "ok"}
+        {"/": html, "/a.js": script}, lambda: {"layout": 1}, lambda: {"status": "ok"}
     )
     page = site.answer("GET", "/")
     assert (page.status, page.body) == (200, b"<html>")

@@ -1,0 +1,51 @@
+"""The built files of the page: what `npm run build` in ``web/`` writes."""
+
+import gzip
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib.resources.abc import Traversable
+from pathlib import PurePosixPath
+
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".webmanifest": "application/manifest+json",
+    ".json": "application/json",
+    ".png": "image/png",
+    ".txt": "text/plain; charset=utf-8",
+}
+
+
+@dataclass(frozen=True)
+class PageFile:
+    content_type: str
+    body: bytes
+    compressed: bytes
+    """The body as gzip."""
+
+
+def read_page(folder: Traversable) -> Mapping[str, PageFile]:
+    """Return the files below a folder by path: ``/``, ``/index.html``, ``/assets/…``."""
+    files = {}
+    for path, file in _walk(folder, "/"):
+        kind = _TYPES.get(PurePosixPath(path).suffix)
+        if kind is None:
+            continue
+        body = file.read_bytes()
+        files[path] = PageFile(kind, body, gzip.compress(body, 6, mtime=0))
+    if "/index.html" in files:
+        files["/"] = files["/index.html"]
+    return files
+
+
+def _walk(folder: Traversable, prefix: str) -> Iterator[tuple[str, Traversable]]:
+    if not folder.is_dir():
+        return
+    for entry in folder.iterdir():
+        path = f"{prefix}{entry.name}"
+        if entry.is_dir():
+            yield from _walk(entry, f"{path}/")
+        else:
+            yield path, entry

@@ -1,0 +1,1 @@
+/** Registers all panels: one line each. A large panel imports its body in `create`. */
