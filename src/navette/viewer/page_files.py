@@ -27,7 +27,7 @@ class PageFile:
 
 
 def read_page(folder: Traversable) -> Mapping[str, PageFile]:
-    """Return the files below a folder by path: ``/``, ``/index.html``, ``/assets/…``."""
+    """Return the files below a folder by path; ``index.html`` also as ``/``."""
     files = {}
     for path, file in _walk(folder, "/"):
         kind = _TYPES.get(PurePosixPath(path).suffix)
