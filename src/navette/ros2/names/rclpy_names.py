@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 #: Navette's module → the names that rclpy takes from it, as in an import statement.
 _ORIGINS = {
+    "navette.msgs.action_msgs.msg": "GoalStatus",
     "navette.msgs.rcl_interfaces.msg": """
         FloatingPointRange, IntegerRange, ListParametersResult, ParameterDescriptor,
         ParameterEvent, Parameter as ParameterMsg, ParameterType, ParameterValue,
@@ -150,18 +151,18 @@ _MODULES = {
     """,
     "rclpy.action.client": """
         ActionClient, await_or_execute, check_for_type_support, ClientGoalHandle,
-        Future, NumberOfEntities, qos_profile_action_status_default,
+        Future, GoalStatus, Node, NumberOfEntities, qos_profile_action_status_default,
         qos_profile_services_default, QoSProfile, Waitable
     """,
     "rclpy.action.graph": """
         get_action_client_names_and_types_by_node, get_action_names_and_types,
-        get_action_server_names_and_types_by_node
+        get_action_server_names_and_types_by_node, Node
     """,
     "rclpy.action.server": """
         ActionServer, await_or_execute, CancelResponse, check_for_type_support,
         default_cancel_callback, default_goal_callback,
-        default_handle_accepted_callback, Future, GoalEvent, GoalResponse,
-        NumberOfEntities, qos_profile_action_status_default,
+        default_handle_accepted_callback, Future, GoalEvent, GoalResponse, GoalStatus,
+        Node, NumberOfEntities, qos_profile_action_status_default,
         qos_profile_services_default, QoSProfile, RCLError, ServerGoalHandle, Waitable
     """,
     "rclpy.callback_groups": """
@@ -183,14 +184,14 @@ _MODULES = {
     "rclpy.duration": "Duration, Infinite, S_TO_NS",
     "rclpy.endpoint_info": "EndpointTypeEnum, ServiceEndpointInfo, TopicEndpointInfo",
     "rclpy.event_handler": """
-        CallbackGroup, EventHandler, IncompatibleTypeInfo, NumberOfEntities,
+        CallbackGroup, EventHandler, get_logger, IncompatibleTypeInfo, NumberOfEntities,
         PublisherEventCallbacks, qos_policy_name_from_kind, QoSEventHandler,
         QoSLivelinessChangedInfo, QoSLivelinessLostInfo, QoSMessageLostInfo,
         QoSOfferedDeadlineMissedInfo, QoSOfferedIncompatibleQoSInfo,
         QoSPublisherEventType, QoSPublisherMatchedInfo, QoSRequestedDeadlineMissedInfo,
         QoSRequestedIncompatibleQoSInfo, QoSSubscriptionEventType,
         QoSSubscriptionMatchedInfo, SubscriptionEventCallbacks,
-        UnsupportedEventTypeError
+        UnsupportedEventTypeError, Waitable
     """,
     "rclpy.exceptions": """
         InvalidHandle, InvalidNamespaceException, InvalidNodeNameException,
@@ -218,7 +219,7 @@ _MODULES = {
     "rclpy.impl": "",
     "rclpy.impl.implementation_singleton": "rclpy_implementation",
     "rclpy.impl.logging_severity": "LoggingSeverity",
-    "rclpy.impl.rcutils_logger": "RcutilsLogger",
+    "rclpy.impl.rcutils_logger": "Clock, LoggingSeverity, RcutilsLogger",
     "rclpy.lifecycle": """
         LifecycleNode, LifecycleNodeMixin, LifecyclePublisher, LifecycleState,
         ManagedEntity, navette.runtime.lifecycle.Node, NodeMixin,
@@ -229,13 +230,14 @@ _MODULES = {
         ManagedEntity, SimpleManagedEntity, TransitionCallbackReturn
     """,
     "rclpy.lifecycle.node": """
-        CallbackGroup, Context, LifecycleNode, LifecycleNodeMixin, LifecyclePublisher,
-        LifecycleState, Node, Parameter, PublisherEventCallbacks, QoSOverridingOptions,
-        QoSProfile, Service, TransitionCallbackReturn
+        CallbackGroup, check_is_valid_srv_type, Context, LifecycleNode,
+        LifecycleNodeMixin, LifecyclePublisher, LifecycleState, ManagedEntity, Node,
+        Parameter, PublisherEventCallbacks, QoSOverridingOptions, QoSProfile, Service,
+        TransitionCallbackReturn
     """,
     "rclpy.lifecycle.publisher": """
         CallbackGroup, LifecyclePublisher, Publisher, PublisherEventCallbacks,
-        QoSProfile
+        QoSProfile, SimpleManagedEntity
     """,
     "rclpy.logging": """
         clear_config, get_logger, get_logger_effective_level, get_logger_level,
@@ -243,7 +245,7 @@ _MODULES = {
         LoggingSeverity, RcutilsLogger, set_logger_level,
         navette.runtime.program_log.shutdown
     """,
-    "rclpy.logging_service": "LoggingService",
+    "rclpy.logging_service": "LoggingService, LoggingSeverity",
     "rclpy.node": """
         AllowableParameterValue, CallbackGroup, check_is_valid_msg_type,
         check_is_valid_srv_type, Client, Clock, Context, Executor, expand_topic_name,
@@ -272,15 +274,21 @@ _MODULES = {
     """,
     "rclpy.parameter_client": """
         AsyncParameterClient, CallbackGroup, Future, Node, Parameter,
-        parameter_dict_from_yaml_file, QoSProfile
+        parameter_dict_from_yaml_file, QoSOverridingOptions, QoSProfile, Subscription,
+        SubscriptionEventCallbacks
     """,
     "rclpy.parameter_event_handler": """
-        ParameterCallbackHandle, ParameterEventCallbackHandle, ParameterEventHandler
+        CallbackGroup, Node, Parameter, ParameterCallbackHandle,
+        ParameterEventCallbackHandle, ParameterEventHandler, QoSOverridingOptions,
+        QoSProfile, SubscriptionEventCallbacks
     """,
-    "rclpy.parameter_service": "ParameterService",
+    "rclpy.parameter_service": """
+        Parameter, ParameterNotDeclaredException, ParameterService,
+        ParameterUninitializedException
+    """,
     "rclpy.publisher": """
-        CallbackGroup, Duration, MsgT, MsgType, Publisher, PublisherEventCallbacks,
-        QoSProfile
+        CallbackGroup, Duration, EventHandler, MsgT, MsgType, Publisher,
+        PublisherEventCallbacks, QoSProfile
     """,
     "rclpy.qos": """
         DeadlineBestAvailable, DurabilityPolicy, Duration, HistoryPolicy,
@@ -295,8 +303,11 @@ _MODULES = {
         ReliabilityPolicy
     """,
     "rclpy.qos_overriding_options": """
-        InvalidQosOverridesError, QosCallbackResult, QosCallbackType,
-        QoSOverridingOptions
+        Duration, InvalidQosOverridesError, Parameter,
+        ParameterAlreadyDeclaredException, Publisher, QosCallbackResult,
+        QosCallbackType, QoSDurabilityPolicy, QoSHistoryPolicy, QoSLivelinessPolicy,
+        QoSOverridingOptions, QoSPolicyKind, QoSProfile, QoSReliabilityPolicy,
+        Subscription
     """,
     "rclpy.serialization": """
         check_for_type_support, deserialize_message, MsgT, serialize_message
@@ -307,17 +318,21 @@ _MODULES = {
     """,
     "rclpy.service_introspection": "ServiceIntrospectionState",
     "rclpy.signals": """
-        get_current_signal_handlers_options, install_signal_handlers,
-        SignalHandlerGuardCondition, SignalHandlerOptions, uninstall_signal_handlers
+        get_current_signal_handlers_options, GuardCondition, install_signal_handlers,
+        InvalidHandle, SignalHandlerGuardCondition, SignalHandlerOptions,
+        uninstall_signal_handlers
     """,
     "rclpy.subscription": """
-        CallbackGroup, ContentFilterOptions, MessageInfo, MsgT, MsgType, QoSProfile,
-        Subscription, SubscriptionEventCallbacks
+        CallbackGroup, ContentFilterOptions, EventHandler, MessageInfo, MsgT, MsgType,
+        QoSProfile, Subscription, SubscriptionEventCallbacks
     """,
     "rclpy.subscription_content_filter_options": "ContentFilterOptions",
     "rclpy.task": "Executor, Future, Task",
     "rclpy.time": "ClockType, Duration, S_TO_NS, Time",
-    "rclpy.time_source": "CLOCK_TOPIC, TimeSource, USE_SIM_TIME_NAME",
+    "rclpy.time_source": """
+        Clock, CLOCK_TOPIC, ClockType, Node, Parameter, QoSProfile, ReliabilityPolicy,
+        ROSClock, Time, TimeSource, USE_SIM_TIME_NAME
+    """,
     "rclpy.timer": """
         CallbackGroup, Clock, ClockType, Context, get_default_context, InvalidHandle,
         Rate, ROSInterruptException, Time, Timer, TimerInfo
@@ -330,6 +345,7 @@ _MODULES = {
         HIDDEN_TOPIC_PREFIX, topic_or_service_is_hidden
     """,
     "rclpy.type_description_service": """
+        check_is_valid_srv_type, Parameter, Service,
         START_TYPE_DESCRIPTION_SERVICE_PARAM, TypeDescriptionService
     """,
     "rclpy.type_hash": "TypeHash",
@@ -356,7 +372,8 @@ _MODULES = {
         validate_topic_name
     """,
     "rclpy.wait_for_message": """
-        Node, QoSProfile, SignalHandlerGuardCondition, wait_for_message
+        Node, QoSProfile, SignalHandlerGuardCondition, timeout_sec_to_nsec,
+        wait_for_message
     """,
     "rclpy.waitable": "CallbackGroup, Future, NumberOfEntities, Waitable",
 }
