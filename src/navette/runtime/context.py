@@ -14,7 +14,7 @@ from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
-from navette.runtime.handles import Handle
+from navette.runtime.handles import HasHandle
 from navette.runtime.input_check import SharedInputChecks
 from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
@@ -36,7 +36,7 @@ _log = logging.getLogger(__name__)
 _LONGEST_CALLBACK_S = 2.0
 
 
-class Context:
+class Context(HasHandle):
     """Everything that the nodes of one program share.
 
     As in rclpy, a context becomes valid with :meth:`init`. A context that a program
@@ -150,11 +150,6 @@ class Context:
     def ok(self) -> bool:
         """Return whether the context is initialised and not shut down."""
         return self._initialized and not self._shut_down
-
-    @property
-    def handle(self) -> Handle:
-        """The handle that rclpy's wait set takes."""
-        return Handle(self)
 
     @property
     def was_shut_down(self) -> bool:

@@ -3,8 +3,10 @@
 from abc import ABC, abstractmethod
 from typing import Self
 
+from navette.runtime.handles import HasHandle
 
-class Destroyable(ABC):
+
+class Destroyable(HasHandle, ABC):
     """Base of entities; a ``with`` statement destroys its entity at the end."""
 
     __slots__ = ()

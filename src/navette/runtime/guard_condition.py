@@ -6,11 +6,11 @@ from typing import Any
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.events import Entity
-from navette.runtime.handles import Handle
+from navette.runtime.handles import HasHandle
 from navette.runtime.node_entities import NodeEntities
 
 
-class GuardCondition(Entity):
+class GuardCondition(HasHandle, Entity):
     """Runs a callback after :meth:`trigger`. Created by ``create_guard_condition``.
 
     Triggers before the callback has started count as one. A guard condition without
@@ -32,11 +32,6 @@ class GuardCondition(Entity):
         self.group = callback_group or self._loop.free_group
         self._entities = entities
         self._triggered = False
-
-    @property
-    def handle(self) -> Handle:
-        """The handle that a wait set takes."""
-        return Handle(self)
 
     @property
     def is_triggered(self) -> bool:

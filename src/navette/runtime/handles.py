@@ -19,3 +19,13 @@ class Handle:
 
     def __exit__(self, *_: object) -> None:
         return
+
+
+class HasHandle:
+    """Base of what has a handle in rclpy; programs pass it on or enter it."""
+
+    __slots__ = ()
+
+    @property
+    def handle(self) -> Handle:
+        return Handle(self)

@@ -15,6 +15,7 @@ from navette.runtime.context import Context, get_default_context
 from navette.runtime.exceptions import NotInitializedException
 from navette.runtime.graph_queries import GraphQueries
 from navette.runtime.guard_condition import GuardCondition
+from navette.runtime.handles import HasHandle
 from navette.runtime.log import Logger
 from navette.runtime.logging_service import LoggingService
 from navette.runtime.names import (
@@ -31,6 +32,7 @@ from navette.runtime.overrides import Override, ParameterOverrides
 from navette.runtime.parameter import Parameter
 from navette.runtime.parameter_service import ParameterService
 from navette.runtime.parameter_store import (
+    REL_TOL,
     Changes,
 )
 from navette.runtime.publisher import Publisher
@@ -63,7 +65,7 @@ HIDDEN_NODE_PREFIX = "_"
 MsgT = TypeVar("MsgT")
 
 
-class Node(GraphQueries, NodeParameters):
+class Node(HasHandle, GraphQueries, NodeParameters):
     """Owns publishers, subscriptions, services, timers and parameters under one name.
 
     Arguments as in rclpy; ``parameter_overrides`` take precedence over values from
@@ -71,6 +73,8 @@ class Node(GraphQueries, NodeParameters):
     the graph queries and the parameters; :class:`NodeTopics` and :class:`NodeServices`
     create the endpoints, and :class:`NodeEntities` registers what the node owns.
     """
+
+    PARAM_REL_TOL = REL_TOL
 
     if not TYPE_CHECKING:  # type checkers would accept any attribute name
 

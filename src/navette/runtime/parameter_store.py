@@ -17,7 +17,8 @@ from navette.runtime.parameter import (
     is_close_to_step,
 )
 
-_REL_TOL = 1e-6  # rclpy's PARAM_REL_TOL
+#: Tolerance at the edges of a parameter's range, relative; rclpy's PARAM_REL_TOL.
+REL_TOL = 1e-6
 
 PreCallback = Callable[[list[Parameter[Any]]], list[Parameter[Any]]]
 OnCallback = Callable[[list[Parameter[Any]]], SetParametersResult]
@@ -175,7 +176,7 @@ def _range_rejection(parameter: Parameter[Any], descriptor: ParameterDescriptor)
     value = parameter.value
     low = min(bounds.from_value, bounds.to_value)
     high = max(bounds.from_value, bounds.to_value)
-    tolerance = 0.0 if exact else _REL_TOL
+    tolerance = 0.0 if exact else REL_TOL
     if any(math.isclose(value, edge, rel_tol=tolerance) for edge in (low, high)):
         return ""
     if not low < value < high:

@@ -14,6 +14,7 @@ from navette.runtime.clock import monotonic_ns
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.events import Call
 from navette.runtime.exceptions import NotInitializedException
+from navette.runtime.handles import HasHandle
 from navette.runtime.time import ClockType, Duration, Time
 
 
@@ -93,7 +94,7 @@ class JumpHandle:
         self.unregister()
 
 
-class Clock:
+class Clock(HasHandle):
     """Clock of a context.
 
     Args:
