@@ -14,6 +14,8 @@ from typing import Any, Protocol
 
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.running import Runner
+from navette.ros2.packages.launch.subprocesses import SubprocessRunner
+from navette.runtime import SystemClock
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
 
@@ -56,8 +58,9 @@ class LaunchContext:
     Args:
         argv: the ``name:=value`` arguments of the command.
         noninteractive: no user is at the terminal.
-        loop: runs the launch's events and timers.
-        runner: starts commands.
+        loop: runs the launch's events and timers (default: a loop on the system
+            clock).
+        runner: starts commands (default: a process for each).
 
     Attributes:
         known_arguments: names of configurations that were read or declared.
@@ -71,13 +74,13 @@ class LaunchContext:
         *,
         argv: Sequence[str] | None = None,
         noninteractive: bool = False,
-        loop: EventLoop,
-        runner: Runner,
+        loop: EventLoop | None = None,
+        runner: Runner | None = None,
     ) -> None:
         self.argv = list(argv or ())
         self.noninteractive = noninteractive
-        self.loop = loop
-        self.runner = runner
+        self.loop = loop or EventLoop(SystemClock())
+        self.runner = runner or SubprocessRunner()
         self.is_shutdown = False
         self.launch_configurations: dict[str, str] = {}
         self.known_arguments: set[str] = set()

@@ -18,8 +18,6 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import console, get_logger
 from navette.ros2.packages.launch.running import Runner
-from navette.ros2.packages.launch.subprocesses import SubprocessRunner
-from navette.runtime import SystemClock
 from navette.runtime.loop import EventLoop
 
 SUCCEEDED = 0
@@ -55,8 +53,8 @@ class LaunchService:
         self.context = LaunchContext(
             argv=argv,
             noninteractive=noninteractive,
-            loop=loop or EventLoop(SystemClock()),
-            runner=runner or SubprocessRunner(),
+            loop=loop,
+            runner=runner,
         )
         self._start_checks: list[Callable[[], None]] = []
         # A caller with its own runner prints the messages itself.

@@ -1,5 +1,14 @@
 """tf2_geometry_msgs: transformation of geometry messages."""
 
+from navette.msgs.geometry_msgs.msg import (
+    PointStamped,
+    PolygonStamped,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+    Vector3Stamped,
+    WrenchStamped,
+)
 from navette.runtime.tf.do_transform import (
     do_transform_point,
     do_transform_polygon_stamped,
