@@ -18,13 +18,15 @@ from navette.viewer.command_queue import Command
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.last_value_cache import LastValueCache
 from navette.viewer.liveness import NodeReport
+from navette.viewer.offered_services import OfferedServices
 from navette.viewer.outbox import Outbox
 from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
-from navette.viewer.replies import Channel, ConnectionGraph, Level
-from navette.viewer.session import ProgramCommands, Session, Topic, Watch
+from navette.viewer.replies import Channel, ConnectionGraph, Level, OfferedService
+from navette.viewer.session import CallId, ProgramCommands, Session, Topic, Watch
 
 _MAX_CLIENT_CHANNELS = 64
+_MAX_CALLS = 32  # of services by a client, without a response
 _MAX_CHANNELS = 256  # opened by all clients together
 _MAX_PARAMETER_NAMES = 1000  # to whose changes a client subscribes
 _MAX_QUEUED = 256 * 2**20  # bytes for all clients; beyond, no files are sent
@@ -68,6 +70,7 @@ class Hub:
         self._topics: dict[Topic, Channel] = {}
         self._watchers: dict[Watch, set[int]] = {}
         self._last = LastValueCache()
+        self._services = OfferedServices()
         self._graph = replies.EMPTY_GRAPH
         # Encoded once for any number of clients that join.
         self._advertisement = replies.advertise(())
@@ -96,6 +99,8 @@ class Hub:
         self._sessions[session.id] = session
         session.send(self._info)
         session.send(self._advertisement)
+        if self._services.advertisement:
+            session.send(self._services.advertisement)
         if self.now_ns:
             session.send(replies.time(self.now_ns))
         if self._playback is not None:
@@ -149,6 +154,10 @@ class Hub:
             self._broadcast(replies.advertise(added))
         if gone or added:
             self._advertisement = replies.advertise(self._channels.values())
+
+    def set_services(self, services: Iterable[OfferedService]) -> None:
+        for frame in self._services.update(services):
+            self._broadcast(frame)
 
     def message(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         channel_id = watch.channel.id
@@ -229,6 +238,21 @@ class Hub:
         for session in self._sessions.values():
             if session.wants_nodes:
                 session.outbox.put_data(_NODES, frame, depth=1)
+
+    def service_responded(self, call_id: CallId, encoding: str, data: bytes) -> None:
+        number, service_id = call_id.number, call_id.service_id
+        frame = replies.service_response(service_id, number, encoding, data)
+        self._end_call(call_id, frame)
+
+    def service_failed(self, call_id: CallId, reason: str) -> None:
+        number, service_id = call_id.number, call_id.service_id
+        self._end_call(call_id, replies.service_failure(service_id, number, reason))
+
+    def _end_call(self, call_id: CallId, frame: str | bytes) -> None:
+        session = self._sessions.get(call_id.client)
+        if session is not None:
+            session.calls.discard(call_id)
+            session.send(frame)
 
     def send_status(
         self, client: int, message: str, level: Level = Level.ERROR
@@ -392,12 +416,28 @@ class Hub:
             session.send(replies.asset(request.request_id, data))
 
     def _call_service(self, session: Session, request: frames.CallService) -> None:
-        session.send(
-            replies.service_failure(
-                request.service_id,
-                request.call_id,
-                "this server has no services",
+        call_id = CallId(session.id, request.service_id, request.call_id)
+        service = self._services.find(request.service_id)
+        problem = ""
+        if service is None:
+            problem = f"unknown service id {request.service_id}"
+        elif request.encoding not in replies.ENCODINGS:
+            known = ", ".join(replies.ENCODINGS)
+            problem = f"encoding {request.encoding!r:.80}; known: {known}"
+        elif call_id in session.calls:
+            problem = f"call id {request.call_id} is in use"
+        elif len(session.calls) >= _MAX_CALLS:
+            problem = f"{_MAX_CALLS} calls have no response yet"
+        if service is None or problem:
+            session.send(
+                replies.service_failure(request.service_id, request.call_id, problem)
             )
+            return
+        session.calls.add(call_id)
+        command = self._program.call_service
+        self._forward(
+            session.id,
+            partial(command, call_id, service, request.encoding, request.data),
         )
 
     def _control_playback(

@@ -57,11 +57,16 @@ from navette.viewer.playback import Playback
 from navette.viewer.playback_requests import PlaybackRequests
 from navette.viewer.publishing import ClientPublishers
 from navette.viewer.remote_parameters import LIST, RemoteParameters
+from navette.viewer.replies import OfferedService
 from navette.viewer.server import ViewerServer
 from navette.viewer.service_calls import ServiceCalls
-from navette.viewer.session import Watch
+from navette.viewer.service_requests import ServiceRequests
+from navette.viewer.session import CallId, Watch
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 from navette.viewer.web import AccessPolicy, Site
+
+# Packages of the services that every node has.
+_EVERY_NODE = ("rcl_interfaces", "type_description_interfaces")
 
 
 class ViewerNode(StageNode):
@@ -179,9 +184,13 @@ class ViewerNode(StageNode):
             self._frame("base_frame", "base_link"),
         )
         ends = self._topic_ends()
+        servers = self._servers()
         topics = topics_of(ends, self._definition)
+        services = (self._offered(*key) for key in sorted({s[:2] for s in servers}))
+        graph = graph_of(ends, ((service, node) for service, _, node in servers))
         self._server.call(self._hub.set_topics, topics)
-        self._server.call(self._hub.set_graph, graph_of(ends))
+        self._server.call(self._hub.set_services, [s for s in services if s])
+        self._server.call(self._hub.set_graph, graph)
         self._remote.set_nodes(self._serving_elsewhere())
 
     def _frame(self, parameter: str, default: str) -> str:
@@ -207,6 +216,27 @@ class ViewerNode(StageNode):
             for endpoint in self.context.graph.endpoints()
         )
         return [end for end in found if end.publishes or end.node != own]
+
+    def _servers(self) -> list[tuple[str, str, str]]:
+        """Return name, type and node of each service that clients may need.
+
+        Without parts of actions and without those that each node has: parameters have
+        their own requests.
+        """
+        return [
+            (end.topic, end.type_name, end.node_full_name)
+            for end in self.context.graph.service_endpoints()
+            if end.kind.name == "SERVICE"
+            and not _is_hidden(end.topic)
+            and end.type_name.partition("/")[0] not in _EVERY_NODE
+        ]
+
+    def _offered(self, name: str, type_name: str) -> OfferedService | None:
+        request = self._definition(name, f"{type_name}_Request")
+        response = self._definition(name, f"{type_name}_Response")
+        if request is None or response is None:
+            return None
+        return OfferedService(name, type_name, request, response)
 
     def _definition(self, topic: str, type_name: str) -> str | None:
         """Return the type's definition; None, and one warning, for an unknown type."""
@@ -269,6 +299,11 @@ class ViewerNode(StageNode):
     def request_parameter_texts(self, client: int) -> None:
         self._parameters.describe(client)
 
+    def call_service(
+        self, call_id: CallId, service: OfferedService, encoding: str, data: bytes
+    ) -> None:
+        self._services.call(call_id, service, encoding, data)
+
     def control_playback(self, client: int, request: ControlPlayback) -> None:
         self._execute(client, self._playback.control, request)
 
@@ -319,6 +354,7 @@ class ViewerNode(StageNode):
             return self.create_client(get_interface(type_name), service)
 
         service_calls = ServiceCalls(client_of, now_s)
+        self._services = ServiceRequests(self._hub, self._call, service_calls)
         self._remote = RemoteParameters(
             service_calls,
             lambda name, value: _parameter(name, value).to_parameter_msg(),

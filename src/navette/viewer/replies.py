@@ -6,8 +6,8 @@ for playback control, the SDK's (foxglove/foxglove-sdk, rust/foxglove/src/protoc
 
 import json
 import struct
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import asdict, dataclass, field
 from enum import IntEnum
 from typing import Any
 
@@ -22,6 +22,7 @@ CAPABILITIES = (
     "parameters",
     "parametersSubscribe",
     "connectionGraph",
+    "services",
     "time",
     "assets",
 )
@@ -47,11 +48,26 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class ConnectionGraph:
-    """Names of the publishing and subscribing nodes by topic."""
+class OfferedService:
+    """A service of the graph; definitions of request and response in ros2msg."""
 
-    published: Mapping[str, tuple[str, ...]]
-    subscribed: Mapping[str, tuple[str, ...]]
+    name: str
+    type_name: str
+    request: str
+    response: str
+
+
+Ends = Mapping[str, tuple[str, ...]]
+"""Names of nodes, by topic or service."""
+
+
+@dataclass(frozen=True)
+class ConnectionGraph:
+    """The publishing and subscribing nodes by topic, the serving nodes by service."""
+
+    published: Ends
+    subscribed: Ends
+    served: Ends = field(default_factory=dict)
 
 
 EMPTY_GRAPH = ConnectionGraph({}, {})
@@ -151,38 +167,34 @@ def _parameter(parameter: WireParameter) -> dict[str, Any]:
 
 def graph_update(old: ConnectionGraph, new: ConnectionGraph) -> str | None:
     """Encode the difference of two graphs; None if they are equal."""
-    published = _changed(old.published, new.published)
-    subscribed = _changed(old.subscribed, new.subscribed)
-    gone = (old.published.keys() | old.subscribed.keys()) - (
-        new.published.keys() | new.subscribed.keys()
-    )
+    known = new.published.keys() | new.subscribed.keys()
+    gone = (old.published.keys() | old.subscribed.keys()) - known
+    unserved = old.served.keys() - new.served.keys()
     # A topic that lost its last publisher but is still subscribed to is not removed.
-    lost = old.published.keys() - new.published.keys() - gone
-    published.update(dict.fromkeys(lost, ()))
-    lost = old.subscribed.keys() - new.subscribed.keys() - gone
-    subscribed.update(dict.fromkeys(lost, ()))
-    if not (published or subscribed or gone):
+    published = _changed(old.published, new.published, gone)
+    subscribed = _changed(old.subscribed, new.subscribed, gone)
+    served = _changed(old.served, new.served, unserved)
+    if not (published or subscribed or served or gone or unserved):
         return None
     return _json(
         op="connectionGraphUpdate",
-        publishedTopics=[
-            {"name": topic, "publisherIds": list(nodes)}
-            for topic, nodes in sorted(published.items())
-        ],
-        subscribedTopics=[
-            {"name": topic, "subscriberIds": list(nodes)}
-            for topic, nodes in sorted(subscribed.items())
-        ],
-        advertisedServices=[],
+        publishedTopics=_ends(published, "publisherIds"),
+        subscribedTopics=_ends(subscribed, "subscriberIds"),
+        advertisedServices=_ends(served, "providerIds"),
         removedTopics=sorted(gone),
-        removedServices=[],
+        removedServices=sorted(unserved),
     )
 
 
-def _changed(
-    old: Mapping[str, tuple[str, ...]], new: Mapping[str, tuple[str, ...]]
-) -> dict[str, tuple[str, ...]]:
-    return {topic: nodes for topic, nodes in new.items() if old.get(topic) != nodes}
+def _changed(old: Ends, new: Ends, gone: Set[str]) -> dict[str, tuple[str, ...]]:
+    """Return new and changed entries, and empty ones for those that were lost."""
+    changed = {name: nodes for name, nodes in new.items() if old.get(name) != nodes}
+    lost = old.keys() - new.keys() - gone
+    return changed | dict.fromkeys(lost, ())
+
+
+def _ends(ends: Ends, key: str) -> list[dict[str, Any]]:
+    return [{"name": name, key: list(nodes)} for name, nodes in sorted(ends.items())]
 
 
 def nodes(reports: Iterable[NodeReport], blocked_s: float) -> str:
@@ -205,6 +217,48 @@ def asset(request_id: int, data: bytes) -> bytes:
 def asset_error(request_id: int, message: str) -> bytes:
     text = message.encode(errors="replace")  # it may quote half a surrogate pair
     return struct.pack("<BIBI", 4, request_id, 1, len(text)) + text
+
+
+def advertise_services(services: Iterable[tuple[int, OfferedService]]) -> str:
+    """Encode services with their ids."""
+    return _json(
+        op="advertiseServices",
+        services=[
+            {
+                "id": service_id,
+                "name": service.name,
+                "type": service.type_name,
+                "request": _service_schema(service, "Request", service.request),
+                "response": _service_schema(service, "Response", service.response),
+                # Clients from before 2024 read these.
+                "requestSchema": service.request,
+                "responseSchema": service.response,
+            }
+            for service_id, service in services
+        ],
+    )
+
+
+def _service_schema(
+    service: OfferedService, part: str, definition: str
+) -> dict[str, str]:
+    return {
+        "encoding": "cdr",
+        "schemaName": f"{service.type_name}_{part}",
+        "schemaEncoding": "ros2msg",
+        "schema": definition,
+    }
+
+
+def unadvertise_services(service_ids: Iterable[int]) -> str:
+    return _json(op="unadvertiseServices", serviceIds=list(service_ids))
+
+
+def service_response(
+    service_id: int, call_id: int, encoding: str, data: bytes
+) -> bytes:
+    name = encoding.encode()
+    return struct.pack("<BIII", 3, service_id, call_id, len(name)) + name + data
 
 
 def service_failure(service_id: int, call_id: int, message: str) -> str:

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from navette.errors import NavetteError
+from navette.msgs import Message
 
 TIMEOUT_S = 1.0
 
@@ -60,17 +61,23 @@ class ServiceCalls:
         self,
         service: str,
         type_name: str,
-        fields: dict[str, Any],
+        request: Message | dict[str, Any],
         on_response: OnResponse,
         *,
         timeout_s: float = TIMEOUT_S,
     ) -> None:
-        """Call a service; ``on_response`` is called exactly once, possibly at once."""
+        """Call a service; ``on_response`` is called exactly once, possibly at once.
+
+        Args:
+            request: the message or its fields.
+        """
         try:
             client = self._clients.get(service)
             if client is None:
                 client = self._clients[service] = self._connect(service, type_name)
-            future = client.call_async(client.srv_type.Request(**fields))
+            if isinstance(request, dict):
+                request = client.srv_type.Request(**request)
+            future = client.call_async(request)
         except NavetteError as error:
             self._destroy_unused(service)
             on_response(None, str(error))

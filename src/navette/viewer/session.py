@@ -7,7 +7,7 @@ from navette.viewer import replies
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.last_value_cache import STATE_TYPES
 from navette.viewer.outbox import Outbox
-from navette.viewer.replies import Channel, Level
+from navette.viewer.replies import Channel, Level, OfferedService
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,22 @@ class Watch:
     client: int | None
 
 
+@dataclass(frozen=True)
+class CallId:
+    """A client's call of a service; ``number`` is chosen by the client."""
+
+    client: int
+    service_id: int
+    number: int
+
+
 class ProgramCommands(Protocol):
     """Commands of the hub to the running program.
 
     :class:`~navette.viewer.node.ViewerNode` executes them on the executor's thread.
     After each publisher, publish, parameter and playback command the program calls
-    :meth:`Hub.done`; the number of unfinished commands of a client is limited.
+    :meth:`Hub.done`; the number of unfinished commands of a client is limited. A
+    service call ends with :meth:`Hub.service_responded` or :meth:`Hub.service_failed`.
     """
 
     def watch(self, watch: Watch) -> None: ...
@@ -62,6 +72,9 @@ class ProgramCommands(Protocol):
         request_id: str | None,
     ) -> None: ...
     def request_parameter_texts(self, client: int) -> None: ...
+    def call_service(
+        self, call_id: CallId, service: OfferedService, encoding: str, data: bytes
+    ) -> None: ...
     def control_playback(self, client: int, request: ControlPlayback) -> None: ...
     def step_playback(self, client: int) -> None: ...
 
@@ -80,6 +93,7 @@ class Session:
     wants_graph: bool = False
     wants_nodes: bool = False
     pending: int = 0
+    calls: set[CallId] = field(default_factory=set)  # of services, without a response
 
     def send(self, frame: str | bytes) -> None:
         self.outbox.put_control(frame)

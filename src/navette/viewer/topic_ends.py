@@ -1,4 +1,5 @@
-"""Convert publishers and subscriptions to the topics and graph of the protocol."""
+"""Convert publishers, subscriptions and servers to the topics and graph of the
+protocol."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -37,13 +38,19 @@ def topics_of(
     ]
 
 
-def graph_of(ends: Iterable[TopicEnd]) -> ConnectionGraph:
+def graph_of(
+    ends: Iterable[TopicEnd], servers: Iterable[tuple[str, str]] = ()
+) -> ConnectionGraph:
+    """Return the graph; ``servers``: pairs of a service and a node that serves it."""
     published: dict[str, set[str]] = {}
     subscribed: dict[str, set[str]] = {}
     for end in ends:
         side = published if end.publishes else subscribed
         side.setdefault(end.topic, set()).add(end.node)
-    return ConnectionGraph(_sorted(published), _sorted(subscribed))
+    served: dict[str, set[str]] = {}
+    for service, node in servers:
+        served.setdefault(service, set()).add(node)
+    return ConnectionGraph(_sorted(published), _sorted(subscribed), _sorted(served))
 
 
 def _sorted(names: dict[str, set[str]]) -> dict[str, tuple[str, ...]]:

@@ -164,7 +164,7 @@ def test_server_info_has_the_ros_distribution_and_capabilities() -> None:
     info = json.loads(replies.server_info("Navette", "abc"))
     assert info["metadata"] == {"ROS_DISTRO": "jazzy"}
     assert info["sessionId"] == "abc"
-    assert "services" not in info["capabilities"]
+    assert "services" in info["capabilities"]
     assert info["supportedEncodings"] == ["cdr", "json"]
 
 

@@ -276,13 +276,6 @@ def test_assets_are_sent_or_refused(bench: Bench, tmp_path: Path) -> None:
     assert b"unknown asset 'file:///x'" in missing
 
 
-def test_service_calls_fail_with_a_message(bench: Bench) -> None:
-    session = bench.join()
-    bench.hub.receive(session, b"\x02" + bytes(12))
-    (failure,) = sent(session.outbox)
-    assert failure["op"] == "serviceCallFailure"
-
-
 def test_problems_of_long_requests_are_summed_up(bench: Bench) -> None:
     session = bench.join()
     pairs = [{"id": i, "channelId": 1000 + i} for i in range(1000)]

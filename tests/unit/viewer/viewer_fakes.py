@@ -5,7 +5,8 @@ from typing import Any
 
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.outbox import Outbox
-from navette.viewer.session import Watch
+from navette.viewer.replies import OfferedService
+from navette.viewer.session import CallId, Watch
 
 
 class RecordingProgram:
@@ -44,6 +45,11 @@ class RecordingProgram:
 
     def request_parameter_texts(self, client: int) -> None:
         self.calls.append(("describe", client))
+
+    def call_service(
+        self, call_id: CallId, service: OfferedService, encoding: str, data: bytes
+    ) -> None:
+        self.calls.append(("call", call_id, service.name, encoding, data))
 
     def control_playback(self, client: int, request: ControlPlayback) -> None:
         self.calls.append(("playback", client, request))

@@ -279,6 +279,9 @@ def _split(frame: bytes) -> tuple[Any, ...]:
         return 1, subscription, stamp, frame[13:]
     if frame[0] == 2:
         return (2, *struct.unpack_from("<Q", frame, 1))
+    if frame[0] == 3:
+        service, call, length = struct.unpack_from("<III", frame, 1)
+        return 3, service, call, frame[13 : 13 + length].decode(), frame[13 + length :]
     if frame[0] == 5:
         return 5, frame[1:]
     assert frame[0] == 4, f"unknown opcode {frame[0]}"
