@@ -104,9 +104,35 @@ class VirtualClock(ContextClock):
         if start_ns < 0:
             raise InvalidValueError(f"start time must be >= 0 ns, got {start_ns} ns")
         self.now_ns = start_ns
+        self._limit_ns: int | None = None  # to which time advances while paused
+
+    @property
+    def paused(self) -> bool:
+        """Whether virtual time is stopped; calls of other threads still run."""
+        return self._limit_ns is not None
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        if paused != self.paused:
+            self._limit_ns = self.now_ns if paused else None
+
+    def step(self, duration_ns: int) -> None:
+        """Advance paused time by a duration, as fast as the events run."""
+        if self._limit_ns is not None:
+            self._limit_ns += max(0, duration_ns)
 
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+        if self._limit_ns is not None:
+            return self._step_to(target_ns, self._limit_ns, wakeup)
         if target_ns is None:
+            return not wakeup.wait(None)
+        self.now_ns = max(self.now_ns, target_ns)
+        return True
+
+    def _step_to(self, target_ns: int | None, limit_ns: int, wakeup: Wakeup) -> bool:
+        """Advance within the steps of a paused clock; wait behind them."""
+        if target_ns is None or target_ns > limit_ns:
+            self.now_ns = max(self.now_ns, limit_ns)
             return not wakeup.wait(None)
         self.now_ns = max(self.now_ns, target_ns)
         return True
@@ -126,7 +152,6 @@ class PacedClock(VirtualClock):
     def __init__(self, factor: float = 1.0, start_ns: int = 0) -> None:
         super().__init__(start_ns)
         self._factor = self._checked(factor)
-        self._paused = False
         self._anchor_wall_s = time.perf_counter()
         self._anchor_ns = start_ns
         self._first: tuple[float, int] | None = None
@@ -142,16 +167,6 @@ class PacedClock(VirtualClock):
         self._anchor()
 
     @property
-    def paused(self) -> bool:
-        """Whether virtual time is stopped; calls of other threads still run."""
-        return self._paused
-
-    @paused.setter
-    def paused(self, paused: bool) -> None:
-        self._paused = paused
-        self._anchor()
-
-    @property
     def real_time_factor(self) -> float:
         """Virtual time divided by wall time since the first wait; 0.0 before."""
         if self._first is None:
@@ -160,7 +175,11 @@ class PacedClock(VirtualClock):
         return (self.now_ns - self._first[1]) / 1e9 / wall_s if wall_s > 0 else 0.0
 
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
-        if target_ns is None or self._paused:
+        if self._limit_ns is not None:
+            reached = self._step_to(target_ns, self._limit_ns, wakeup)
+            self._anchor()  # time continues from here
+            return reached
+        if target_ns is None:
             return not wakeup.wait(None)
         if self._first is None:
             self._anchor()

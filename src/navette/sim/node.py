@@ -16,8 +16,9 @@ from navette.runtime import Input, Output, StageNode, Timer
 from navette.sim import messages
 from navette.sim.description import describe_robot, describe_world
 from navette.sim.frames import RobotFrames
-from navette.sim.params import FIXED_AT_START, SimParams
+from navette.sim.params import CONTROL_PERIOD_S, FIXED_AT_START, SimParams
 from navette.sim.robot_state import Motion
+from navette.sim.run_control import RunControl
 from navette.sim.scene import CameraSensor, ImuSensor, LidarSensor, Scene, Sensor
 from navette.sim.sensors import sensors_of
 from navette.sim.simulator import Simulator
@@ -117,6 +118,7 @@ class SimNode(StageNode):
         self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
         self._publish_latched()
         self._create_timers()
+        self._run_control = RunControl(self, round(1e9 * CONTROL_PERIOD_S), self.reset)
         self._forget_graph = self.context.graph.on_change(self._wake_and_rest)
         self._wake_and_rest()
 

@@ -28,7 +28,7 @@ class ServiceRequests:
     ) -> None:
         """Decode the request, call the service and forward its response."""
         try:
-            interface = get_interface(service.type_name)
+            interface: Any = get_interface(service.type_name)
             request = decode_message(encoding, interface.Request, data)
         except NavetteError as error:
             self._fail(call_id, f"{service.name}: {error}")

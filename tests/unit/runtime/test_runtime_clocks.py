@@ -1,6 +1,7 @@
 """Virtual, paced and system clocks, with a fake wall clock."""
 
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 
 import numpy as np
@@ -108,6 +109,23 @@ def test_paused_clock_does_not_advance(wall: FakeWall) -> None:
     clock.factor = 4.0
     clock.go_to(10**9, wakeup)
     assert wakeup.waits_s[-1] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("make", [VirtualClock, lambda: PacedClock(1.0)])
+def test_a_paused_clock_advances_by_steps_without_waiting(
+    wall: FakeWall, make: Callable[[], VirtualClock]
+) -> None:
+    clock, wakeup = make(), FakeWakeup(wall)
+    clock.step(10)
+    clock.paused = True
+    clock.step(100)
+    clock.paused = True  # keeps the step
+    assert clock.go_to(60, wakeup)
+    wakeup.is_set = True
+    assert not clock.go_to(101, wakeup)
+    assert (clock.now_ns, wakeup.waits_s) == (100, [None])
+    clock.paused = False
+    assert not clock.paused
 
 
 def test_system_clock_waits(wall: FakeWall) -> None:

@@ -1,0 +1,1 @@
+"""Interfaces of simulation_interfaces."""
