@@ -12,7 +12,14 @@ from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import Bool, Empty, String
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.runtime import Input, Output, StageNode, Timer
+from navette.runtime import (
+    Input,
+    Output,
+    PacedClock,
+    StageNode,
+    Timer,
+    VirtualClock,
+)
 from navette.sim import messages
 from navette.sim.description import describe_robot, describe_world
 from navette.sim.frames import RobotFrames
@@ -118,7 +125,7 @@ class SimNode(StageNode):
         self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
         self._publish_latched()
         self._create_timers()
-        self._run_control = RunControl(self, round(1e9 * CONTROL_PERIOD_S), self.reset)
+        self._serve_run_control()
         self._forget_graph = self.context.graph.on_change(self._wake_and_rest)
         self._wake_and_rest()
 
@@ -220,6 +227,17 @@ class SimNode(StageNode):
         self._create_sensor_timers(
             CameraSensor, topics.CAMERA_INFO.name, self._publish_info
         )
+
+    def _serve_run_control(self) -> None:
+        clock = self.context.clock
+        control = RunControl(
+            clock if isinstance(clock, VirtualClock) else None,
+            clock if isinstance(clock, PacedClock) else None,
+            round(1e9 * CONTROL_PERIOD_S),
+            self.reset,
+        )
+        for name, (kind, serve) in control.services.items():
+            self.create_service(kind, f"~/{name}", serve)
 
     def _every(
         self, rate_hz: float, publish: Callable[[int], None], *names: str

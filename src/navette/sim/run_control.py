@@ -6,8 +6,8 @@ the run computes the same as without a pause.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
 
 from navette.msgs.rosbag2_interfaces.srv import GetRate, SetRate
 from navette.msgs.simulation_interfaces.msg import Result, SimulationState
@@ -17,35 +17,59 @@ from navette.msgs.simulation_interfaces.srv import (
     SetSimulationState,
     StepSimulation,
 )
-from navette.runtime import ContextClock, Node, PacedClock, VirtualClock
 
 _MOST_STEPS_NS = 60 * 10**9  # of one request: the program does nothing else meanwhile
 _RATES = (0.01, 100.0)
 
 
+class PausableClock(Protocol):
+    """Virtual time that can be stopped."""
+
+    paused: bool
+
+    def step(self, duration_ns: int) -> None: ...
+
+
+class Pace(Protocol):
+    """Virtual time that follows the wall clock; ``factor``: virtual by wall time."""
+
+    factor: float
+
+
 class RunControl:
-    """Serves the run of a node's context, under the node's name.
+    """Serves the run of a simulation.
 
     Args:
+        clock: None if its time cannot be stopped.
+        pace: None if it is not paced.
         step_ns: duration of a step.
         reset: resets robot and world.
     """
 
-    def __init__(self, node: Node, step_ns: int, reset: Callable[[], None]) -> None:
-        self._clock: ContextClock = node.context.clock
+    def __init__(
+        self,
+        clock: PausableClock | None,
+        pace: Pace | None,
+        step_ns: int,
+        reset: Callable[[], None],
+    ) -> None:
+        self._clock, self._pace = clock, pace
         self._step_ns, self._reset = step_ns, reset
-        for name, kind, serve in (
-            ("get_simulation_state", GetSimulationState, self._get_state),
-            ("set_simulation_state", SetSimulationState, self._set_state),
-            ("step_simulation", StepSimulation, self._step),
-            ("reset_simulation", ResetSimulation, self._on_reset),
-            ("get_rate", GetRate, self._get_rate),
-            ("set_rate", SetRate, self._set_rate),
-        ):
-            node.create_service(kind, f"~/{name}", serve)
+
+    @property
+    def services(self) -> Mapping[str, tuple[type, Callable[[Any, Any], Any]]]:
+        """Name below the node's name → type and callback."""
+        return {
+            "get_simulation_state": (GetSimulationState, self._get_state),
+            "set_simulation_state": (SetSimulationState, self._set_state),
+            "step_simulation": (StepSimulation, self._step),
+            "reset_simulation": (ResetSimulation, self._on_reset),
+            "get_rate": (GetRate, self._get_rate),
+            "set_rate": (SetRate, self._set_rate),
+        }
 
     def _get_state(self, request: Any, response: Any) -> Any:
-        paused = isinstance(self._clock, VirtualClock) and self._clock.paused
+        paused = self._clock is not None and self._clock.paused
         playing = SimulationState.STATE_PLAYING
         response.state.state = SimulationState.STATE_PAUSED if paused else playing
         response.result = _ok()
@@ -56,7 +80,7 @@ class RunControl:
         return response
 
     def _change(self, state: int) -> Result:
-        if not isinstance(self._clock, VirtualClock):
+        if self._clock is None:
             return _lockstep()
         if state == SimulationState.STATE_STOPPED:
             self._reset()
@@ -79,7 +103,7 @@ class RunControl:
 
     def _advance(self, steps: int) -> Result:
         most = _MOST_STEPS_NS // self._step_ns
-        if not isinstance(self._clock, VirtualClock):
+        if self._clock is None:
             return _lockstep()
         if not self._clock.paused:
             return _failed(
@@ -107,16 +131,15 @@ class RunControl:
         return response
 
     def _get_rate(self, request: Any, response: Any) -> Any:
-        clock = self._clock
-        response.rate = clock.factor if isinstance(clock, PacedClock) else math.inf
+        response.rate = math.inf if self._pace is None else self._pace.factor
         return response
 
     def _set_rate(self, request: Any, response: Any) -> Any:
         """Set the rate of a run that was started with one; others run without limit."""
-        clock, (low, high) = self._clock, _RATES
+        low, high = _RATES
         response.success = False
-        if isinstance(clock, PacedClock) and low <= request.rate <= high:
-            clock.factor = request.rate
+        if self._pace is not None and low <= request.rate <= high:
+            self._pace.factor = request.rate
             response.success = True
         return response
 

@@ -220,8 +220,8 @@ class ViewerNode(StageNode):
     def _servers(self) -> list[tuple[str, str, str]]:
         """Return name, type and node of each service that clients may need.
 
-        Without parts of actions and without those that each node has: parameters have
-        their own requests.
+        Without parts of actions and services of every node, such as parameters, which
+        have their own requests.
         """
         return [
             (end.topic, end.type_name, end.node_full_name)

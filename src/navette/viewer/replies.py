@@ -187,7 +187,7 @@ def graph_update(old: ConnectionGraph, new: ConnectionGraph) -> str | None:
 
 
 def _changed(old: Ends, new: Ends, gone: Set[str]) -> dict[str, tuple[str, ...]]:
-    """Return new and changed entries, and empty ones for those that were lost."""
+    """Return new and changed entries, and empty entries for lost names."""
     changed = {name: nodes for name, nodes in new.items() if old.get(name) != nodes}
     lost = old.keys() - new.keys() - gone
     return changed | dict.fromkeys(lost, ())
