@@ -17,7 +17,7 @@ import pytest
 from navette.bags.params import RecorderParams
 from navette.gym.params import NavigationEnvParams
 from navette.navigation.stack.stack import NODE_CLASSES
-from navette.params import Params, info_of
+from navette.params import Params, info_of, unit_of
 from navette.viewer.params import ViewerParams
 
 ROOT = Path(__file__).parent.parent
@@ -74,24 +74,6 @@ SHARED_NAMES: dict[str, str] = {
     "Node": "launch_ros's action, and rclpy's node",
     "Parameter": "launch_ros's description and substitution, and rclpy's value",
     "TimeoutException": "rclpy's and tf2's",
-}
-
-#: Unit of a parameter → the end of its name.
-SUFFIXES = {
-    "m": "_m",
-    "m/s": "_mps",
-    "m/s²": "_mps2",
-    "rad": "_rad",
-    "rad/s": "_radps",
-    "rad/s²": "_radps2",
-    "deg": "_deg",
-    "s": "_s",
-    "Hz": "_hz",
-    "B": "_bytes",
-    "1/m": "_per_m",
-    "1/m²": "_per_m2",
-    "1/m³": "_per_m3",
-    "m/rad": "_m_per_rad",
 }
 
 #: Parameters without a unit although they are real numbers.
@@ -225,16 +207,11 @@ def test_every_parameter_record_is_checked() -> None:
 def test_a_parameter_carries_its_unit_in_its_name(record: type[Params]) -> None:
     hints = typing.get_type_hints(record)
     for field in dataclasses.fields(record):
-        unit, name = info_of(field).unit, field.name
+        unit, name = unit_of(field.name), field.name
         where = f"{record.__name__}.{name}"
-        if unit:
-            assert unit in SUFFIXES, f"{where}: unit {unit!r} is not in SUFFIXES"
-            assert name.endswith(SUFFIXES[unit]), (
-                f"{where}: expected {SUFFIXES[unit]!r}"
-            )
-        elif hints[name] in (float, tuple[float, ...]):
+        assert info_of(field).unit == unit, f"{where}: its unit is not in its name"
+        if not unit and hints[name] in (float, tuple[float, ...]):
             known = any(re.fullmatch(each, name) for each in DIMENSIONLESS)
-            assert known, f"{where}: declare its unit, or add it to DIMENSIONLESS"
-        else:
-            ends = [suffix for suffix in SUFFIXES.values() if name.endswith(suffix)]
-            assert not ends, f"{where}: declare the unit that its name ends in"
+            assert known, f"{where}: end its name in its unit, or add to DIMENSIONLESS"
+        if unit:
+            assert hints[name] not in (str, bool), f"{where}: ends in a unit"

@@ -25,28 +25,23 @@ class RecorderParams(Params):
     flush_period_s: float = param(
         0.25,
         "longest time before received messages are written to disk",
-        unit="s",
         at_least=0.01,
         at_most=10.0,
     )
     compression: str = param("zstd", "compression of the chunks", choices=COMPRESSIONS)
     max_bag_size_bytes: int = param(
-        0, "size at which a new file is started; 0 for one file", unit="B", at_least=0
+        0, "size at which a new file is started; 0 for one file", at_least=0
     )
     max_bag_duration_s: float = param(
-        0.0,
-        "duration after which a new file is started; 0 for one file",
-        unit="s",
-        at_least=0.0,
+        0.0, "duration after which a new file is started; 0 for one file", at_least=0.0
     )
     snapshot_duration_s: float = param(
         0.0,
         "duration kept in memory and written on request; 0 writes continuously",
-        unit="s",
         at_least=0.0,
     )
     snapshot_bytes: int = param(
-        512 * 2**20, "maximum memory of a snapshot", unit="B", at_least=1024
+        512 * 2**20, "maximum memory of a snapshot", at_least=1024
     )
     paused: bool = param(False, "pause the recording")
 

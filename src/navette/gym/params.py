@@ -9,9 +9,7 @@ from navette.params import Params, param
 class NavigationEnvParams(Params):
     """Step, observation, episode and reward of ``navette/Navigation-v0``."""
 
-    step_s: float = param(
-        0.1, "simulated time of a step", unit="s", at_least=0.01, at_most=1.0
-    )
+    step_s: float = param(0.1, "simulated time of a step", at_least=0.01, at_most=1.0)
     beams: int = param(
         0,
         "ranges in the observation: the scan is divided into as many equal sectors, "
@@ -22,14 +20,13 @@ class NavigationEnvParams(Params):
         0.0,
         "the observed goal is the point of the shortest path this far ahead; "
         "0 = the goal itself",
-        unit="m",
         at_least=0.0,
     )
     tolerance_m: float = param(
-        0.5, "distance from the goal that ends the episode", unit="m", above=0.0
+        0.5, "distance from the goal that ends the episode", above=0.0
     )
     limit_s: float = param(
-        100.0, "simulated time after which an episode is truncated", unit="s", above=0.0
+        100.0, "simulated time after which an episode is truncated", above=0.0
     )
     worlds: int = param(
         0,
@@ -47,10 +44,7 @@ class NavigationEnvParams(Params):
         False, "draw start and goal in generated worlds too, instead of theirs"
     )
     farthest_goal_m: float = param(
-        20.0,
-        "longest shortest path from a drawn start to a drawn goal",
-        unit="m",
-        at_least=1.0,
+        20.0, "longest shortest path from a drawn start to a drawn goal", at_least=1.0
     )
     progress_reward: float = param(
         1.0, "reward for each metre by which the shortest path to the goal shortens"

@@ -4,10 +4,10 @@ A stage declares::
 
     @dataclass(frozen=True, kw_only=True)
     class CostmapParams(Params):
-        resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0)
+        resolution_m: float = param(0.1, "edge of a cell", above=0.0)
 
-The values are validated on construction. The runtime declares the fields as ROS 2
-parameters with the same description and range.
+A name ends in its unit (:data:`UNITS`). The values are validated on construction. The
+runtime declares the fields as ROS 2 parameters with the same description and range.
 """
 
 import dataclasses
@@ -53,6 +53,25 @@ class ParamInfo:
 LARGEST = 1e9
 """Largest magnitude of a float; beyond it no range of a field has a meaning."""
 
+UNITS = {
+    "_m": "m",
+    "_mps": "m/s",
+    "_mps2": "m/s²",
+    "_rad": "rad",
+    "_radps": "rad/s",
+    "_radps2": "rad/s²",
+    "_deg": "deg",
+    "_s": "s",
+    "_hz": "Hz",
+    "_kg": "kg",
+    "_bytes": "B",
+    "_per_m": "1/m",
+    "_per_m2": "1/m²",
+    "_per_m3": "1/m³",
+    "_m_per_rad": "m/rad",
+}
+"""End of a parameter's name → its unit."""
+
 _KEY = "navette.param"
 
 
@@ -67,7 +86,16 @@ def param(
     below: float | None = None,
     choices: Collection[str] = (),
 ) -> Any:
-    """Make a dataclass field with a :class:`ParamInfo`."""
+    """Make a dataclass field with a :class:`ParamInfo`.
+
+    Args:
+        default: value of the field.
+        meaning: one phrase, for the reference and ``ros2 param describe``.
+        unit: for a name that does not end in its unit.
+        at_least, at_most: least and largest value allowed.
+        above, below: bounds that are not allowed themselves.
+        choices: allowed texts.
+    """
     info = ParamInfo(meaning, unit, at_least, at_most, above, below, choices)
     return dataclasses.field(default=default, metadata={_KEY: info})
 
@@ -114,9 +142,17 @@ class Params:
 
 
 def info_of(field: "dataclasses.Field[Any]") -> ParamInfo:
-    """Return the :class:`ParamInfo` of a field made by :func:`param`."""
+    """Return the :class:`ParamInfo` of a field, with its unit."""
     info = field.metadata.get(_KEY)
-    return info if isinstance(info, ParamInfo) else ParamInfo(field.name)
+    if not isinstance(info, ParamInfo):
+        info = ParamInfo(field.name)
+    return info if info.unit else dataclasses.replace(info, unit=unit_of(field.name))
+
+
+def unit_of(name: str) -> str:
+    """Return the unit in which a parameter's name ends; empty: none."""
+    endings = [ending for ending in UNITS if name.endswith(ending)]
+    return UNITS[max(endings, key=len)] if endings else ""
 
 
 def _convert(name: str, value: Any, hint: Any) -> Any:

@@ -16,32 +16,26 @@ class SimParams(Params):
     timestep_s: float = param(
         0.002,
         "physics step; a whole number of them makes 10 ms",
-        unit="s",
         at_least=0.0005,
         at_most=0.01,
     )
     seed: int = param(0, "seed of all noise", at_least=0)
 
     command_timeout_s: float = param(
-        0.5,
-        "age of a command that stops the robot; 0 = no timeout",
-        unit="s",
-        at_least=0.0,
+        0.5, "age of a command that stops the robot; 0 = no timeout", at_least=0.0
     )
-    max_speed_mps: float = param(1.0, "fastest forward", unit="m/s", above=0.0)
-    max_reverse_speed_mps: float = param(0.5, "fastest backward", unit="m/s", above=0.0)
-    max_yaw_rate_radps: float = param(1.0, "fastest turn", unit="rad/s", above=0.0)
-    max_accel_mps2: float = param(1.0, "maximum acceleration", unit="m/s²", above=0.0)
-    max_decel_mps2: float = param(4.0, "maximum deceleration", unit="m/s²", above=0.0)
-    max_yaw_accel_radps2: float = param(
-        2.0, "maximum yaw acceleration", unit="rad/s²", above=0.0
-    )
+    max_speed_mps: float = param(1.0, "fastest forward", above=0.0)
+    max_reverse_speed_mps: float = param(0.5, "fastest backward", above=0.0)
+    max_yaw_rate_radps: float = param(1.0, "fastest turn", above=0.0)
+    max_accel_mps2: float = param(1.0, "maximum acceleration", above=0.0)
+    max_decel_mps2: float = param(4.0, "maximum deceleration", above=0.0)
+    max_yaw_accel_radps2: float = param(2.0, "maximum yaw acceleration", above=0.0)
 
     max_side_speed_mps: float = param(
-        1.0, "mecanum: fastest to the left and to the right", unit="m/s", above=0.0
+        1.0, "mecanum: fastest to the left and to the right", above=0.0
     )
     max_steering_rate_radps: float = param(
-        3.0, "Ackermann: fastest change of the steering angle", unit="rad/s", above=0.0
+        3.0, "Ackermann: fastest change of the steering angle", above=0.0
     )
 
     odometry: str = param(
@@ -52,15 +46,11 @@ class SimParams(Params):
     wheel_noise_m: float = param(
         0.0,
         "stddev of a wheel's measured travel after 1 m; grows with its square root",
-        unit="m",
         at_least=0.0,
         at_most=0.5,
     )
     lidar_noise_m: float = param(
-        -1.0,
-        "stddev of ranges; -1 = value of the robot's file",
-        unit="m",
-        at_least=-1.0,
+        -1.0, "stddev of ranges; -1 = value of the robot's file", at_least=-1.0
     )
     lidar_dropout: float = param(
         0.0, "share of beams that return an invalid range", at_least=0.0, at_most=1.0
@@ -81,25 +71,13 @@ class SimParams(Params):
     )
     link_frame_prefix: str = param("", "prefix of link names in frame names")
 
-    clock_rate_hz: float = param(
-        100.0, "/clock", unit="Hz", at_least=0.01, at_most=1000.0
-    )
+    clock_rate_hz: float = param(100.0, "/clock", at_least=0.01, at_most=1000.0)
     odometry_rate_hz: float = param(
-        50.0,
-        "/odom/filtered and /ground_truth",
-        unit="Hz",
-        at_least=0.01,
-        at_most=500.0,
+        50.0, "/odom/filtered and /ground_truth", at_least=0.01, at_most=500.0
     )
-    tf_rate_hz: float = param(
-        50.0, "/tf of the base", unit="Hz", at_least=0.01, at_most=50.0
-    )
+    tf_rate_hz: float = param(50.0, "/tf of the base", at_least=0.01, at_most=50.0)
     joint_tf_rate_hz: float = param(
-        10.0,
-        "/tf and /joint_states of the wheels",
-        unit="Hz",
-        at_least=0.01,
-        at_most=50.0,
+        10.0, "/tf and /joint_states of the wheels", at_least=0.01, at_most=50.0
     )
 
     def check(self) -> None:

@@ -39,40 +39,30 @@ class RobotSizes(Params):
     """Sizes of a robot with two driven wheels and casters; the middle is the axle's."""
 
     name: str = param("robot", "name of the robot")
-    length_m: float = param(0.5, "length of the body", unit="m", above=0.0)
-    width_m: float = param(0.4, "width of the body", unit="m", above=0.0)
-    height_m: float = param(0.2, "height of the body", unit="m", above=0.0)
+    length_m: float = param(0.5, "length of the body", above=0.0)
+    width_m: float = param(0.4, "width of the body", above=0.0)
+    height_m: float = param(0.2, "height of the body", above=0.0)
     is_round: bool = param(False, "a cylinder of diameter length_m instead of a box")
-    mass_kg: float = param(15.0, "mass of the robot", unit="kg", above=0.0)
-    axle_x_m: float = param(
-        0.0, "position of the axle, forward of the body's middle", unit="m"
-    )
-    wheel_radius_m: float = param(0.08, "radius of the wheels", unit="m", above=0.0)
+    mass_kg: float = param(15.0, "mass of the robot", above=0.0)
+    axle_x_m: float = param(0.0, "position of the axle, forward of the body's middle")
+    wheel_radius_m: float = param(0.08, "radius of the wheels", above=0.0)
     wheel_separation_m: float = param(
-        0.0, "distance between the wheels; 0: beside the body", unit="m", at_least=0.0
+        0.0, "distance between the wheels; 0: beside the body", at_least=0.0
     )
-    lidar_x_m: float = param(0.0, "lidar, forward of the body's middle", unit="m")
+    lidar_x_m: float = param(0.0, "lidar, forward of the body's middle")
     lidar_height_m: float = param(
-        0.0, "lidar above the floor; 0: on top of the body", unit="m", at_least=0.0
+        0.0, "lidar above the floor; 0: on top of the body", at_least=0.0
     )
     lidar_beams: int = param(360, "beams of a scan", at_least=2, at_most=20_000)
-    lidar_fov_deg: float = param(
-        360.0, "angle of a scan", unit="°", above=0.0, at_most=360.0
-    )
-    lidar_range_m: float = param(12.0, "largest range", unit="m", above=0.1)
-    lidar_rate_hz: float = param(
-        10.0, "scans per second", unit="Hz", at_least=1.0, at_most=100.0
-    )
-    lidar_noise_m: float = param(
-        0.0, "standard deviation of the ranges", unit="m", at_least=0.0
-    )
-    max_speed_mps: float = param(1.0, "fastest forward", unit="m/s", above=0.0)
-    max_reverse_speed_mps: float = param(0.5, "fastest backward", unit="m/s", above=0.0)
-    max_turn_rate_radps: float = param(2.0, "fastest turn", unit="rad/s", above=0.0)
-    acceleration_mps2: float = param(1.0, "acceleration", unit="m/s²", above=0.0)
-    turn_acceleration_radps2: float = param(
-        4.0, "acceleration of a turn", unit="rad/s²", above=0.0
-    )
+    lidar_fov_deg: float = param(360.0, "angle of a scan", above=0.0, at_most=360.0)
+    lidar_range_m: float = param(12.0, "largest range", above=0.1)
+    lidar_rate_hz: float = param(10.0, "scans per second", at_least=1.0, at_most=100.0)
+    lidar_noise_m: float = param(0.0, "standard deviation of the ranges", at_least=0.0)
+    max_speed_mps: float = param(1.0, "fastest forward", above=0.0)
+    max_reverse_speed_mps: float = param(0.5, "fastest backward", above=0.0)
+    max_turn_rate_radps: float = param(2.0, "fastest turn", above=0.0)
+    acceleration_mps2: float = param(1.0, "acceleration", above=0.0)
+    turn_acceleration_radps2: float = param(4.0, "acceleration of a turn", above=0.0)
 
     def check(self) -> None:
         if abs(self.axle_x_m) > self.length_m / 2:

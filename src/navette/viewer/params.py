@@ -28,11 +28,7 @@ class ViewerParams(Params):
     )
     max_clients: int = param(32, "maximum number of connected clients", at_least=1)
     time_rate_hz: float = param(
-        20.0,
-        "rate at which clients receive the time",
-        unit="Hz",
-        at_least=0.01,
-        at_most=100.0,
+        20.0, "rate at which clients receive the time", at_least=0.01, at_most=100.0
     )
     allowed_origins: tuple[str, ...] = param(
         _FOXGLOVE,

@@ -28,10 +28,10 @@ class ArbiterParams(Params):
         choices=_AFTER,
     )
     max_speed_mps: float = param(
-        0.0, "limit of every command; 0: no limit", unit="m/s", at_least=0.0
+        0.0, "limit of every command; 0: no limit", at_least=0.0
     )
     max_turn_rate_radps: float = param(
-        0.0, "limit of every command; 0: no limit", unit="rad/s", at_least=0.0
+        0.0, "limit of every command; 0: no limit", at_least=0.0
     )
 
 
@@ -65,9 +65,10 @@ class CommandLockParams(Params):
 
     topic: str = param("", "topic of its state, std_msgs/msg/Bool; empty = none")
     timeout: float = param(
-        0.0, "seconds without a message after which it is locked; 0: never",
+        0.0,
+        "seconds without a message after which it is locked; 0: never",
         at_least=0.0,
-    )  # fmt: skip
+    )
     priority: int = param(
         100, "masks every source of a lower priority", at_least=0, at_most=255
     )

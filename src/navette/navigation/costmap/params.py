@@ -16,19 +16,15 @@ class CostmapParams(Params):
         "traces the beams, marks and inflates the hits; or a method of your own",
         choices=COSTMAPS,
     )
-    resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
+    resolution_m: float = param(0.1, "edge of a cell", above=0.0, at_most=1.0)
     size_m: float = param(
         30.0,
         "edge of the square grid around the sensor; hits outside are ignored",
-        unit="m",
         above=0.0,
         at_most=200.0,
     )
     inflation_radius_m: float = param(
-        1.0,
-        "distance from an obstacle at which the cost reaches 0",
-        unit="m",
-        at_least=0.0,
+        1.0, "distance from an obstacle at which the cost reaches 0", at_least=0.0
     )
     inflation_method: str = param(
         "linear",
@@ -37,7 +33,7 @@ class CostmapParams(Params):
         choices=("linear", "exponential"),
     )
     inflation_decay_per_m: float = param(
-        3.0, "decay of the exponential inflation", unit="1/m", at_least=0.0
+        3.0, "decay of the exponential inflation", at_least=0.0
     )
     max_cost: int = param(
         100,
@@ -49,7 +45,6 @@ class CostmapParams(Params):
         0.5,
         "largest margin before a hit in which a grazing beam frees no cells, because "
         "the surface may lie in them",
-        unit="m",
         at_least=0.0,
         at_most=5.0,
     )

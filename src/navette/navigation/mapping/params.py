@@ -2,26 +2,22 @@
 
 from dataclasses import dataclass
 
-from navette.errors import InvalidValueError, ParameterError
-from navette.geometry import Footprint
+from navette.errors import ParameterError
 from navette.navigation.mapping.methods import MAPPINGS
-from navette.params import Params, param
+from navette.navigation.shared_params import FrameParams, check_footprint
+from navette.params import param
 
 
 @dataclass(frozen=True, kw_only=True)
-class MapMemoryParams(Params):
+class MapMemoryParams(FrameParams):
     """Geometry and fusion of the map."""
 
-    map_frame: str = param("map", "frame of the map")
-    base_frame: str = param("base_link", "frame of the robot's base")
-    resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
-    size_m: float = param(40.0, "initial edge of the square map", unit="m", above=0.0)
-    center_x_m: float = param(0.0, "centre of the map in the map frame", unit="m")
-    center_y_m: float = param(0.0, "centre of the map in the map frame", unit="m")
-    growth_m: float = param(
-        10.0, "the map grows by multiples of this", unit="m", above=0.0
-    )
-    max_size_m: float = param(200.0, "largest edge of the map", unit="m", above=0.0)
+    resolution_m: float = param(0.1, "edge of a cell", above=0.0, at_most=1.0)
+    size_m: float = param(40.0, "initial edge of the square map", above=0.0)
+    center_x_m: float = param(0.0, "centre of the map in the map frame")
+    center_y_m: float = param(0.0, "centre of the map in the map frame")
+    growth_m: float = param(10.0, "the map grows by multiples of this", above=0.0)
+    max_size_m: float = param(200.0, "largest edge of the map", above=0.0)
     map_file: str = param(
         "",
         "map file (YAML of map_server) to start with; scans change it; empty: unknown",
@@ -36,47 +32,35 @@ class MapMemoryParams(Params):
         5.0,
         "distance from the sensor beyond which 'overwrite' keeps lethal cells: beams "
         "there are too far apart to measure that a cell is free",
-        unit="m",
         at_least=0.0,
     )
     update_period_s: float = param(
-        1.0,
-        "period of checking whether the robot moved far enough",
-        unit="s",
-        at_least=0.001,
+        1.0, "period of checking whether the robot moved far enough", at_least=0.001
     )
     update_distance_m: float = param(
-        1.5,
-        "distance driven after which the newest costmap is fused",
-        unit="m",
-        at_least=0.0,
+        1.5, "distance driven after which the newest costmap is fused", at_least=0.0
     )
     update_angle_rad: float = param(
-        0.5, "turn after which the newest costmap is fused", unit="rad", at_least=0.0
+        0.5, "turn after which the newest costmap is fused", at_least=0.0
     )
     max_yaw_rate_radps: float = param(
-        1.5,
-        "no fusion while turning faster: the scan would be distorted",
-        unit="rad/s",
-        above=0.0,
+        1.5, "no fusion while turning faster: the scan would be distorted", above=0.0
     )
     max_vertical_speed_mps: float = param(
         0.3,
         "no fusion while falling or rising faster: the scan is at another height",
-        unit="m/s",
         above=0.0,
     )
     max_tilt_rad: float = param(
         0.15,
         "no fusion while tilted further: the scan passes over or under obstacles",
-        unit="rad",
         above=0.0,
     )
     fuse_on_change: bool = param(
         True, "fuse at once if a costmap contradicts the map near the robot"
     )
     change_range_m: float = param(
-        5.0, "half the edge of the square that is compared", unit="m", above=0.0
+        5.0, "half the edge of the square that is compared", above=0.0
     )
     change_cells: int = param(
         3,
@@ -84,20 +68,14 @@ class MapMemoryParams(Params):
         at_least=1,
         at_most=1_000_000,
     )
-    change_period_s: float = param(
-        0.2, "least time between such updates", unit="s", at_least=0.0
-    )
+    change_period_s: float = param(0.2, "least time between such updates", at_least=0.0)
     pose_wait_s: float = param(
-        0.5,
-        "time that a costmap waits for the pose at its stamp",
-        unit="s",
-        at_least=0.0,
+        0.5, "time that a costmap waits for the pose at its stamp", at_least=0.0
     )
     footprint_m: tuple[float, ...] = param(
         (),
         "outline of the body in the base frame, x1, y1, x2, y2, …; cells wholly under "
         "it are marked free (empty: none)",
-        unit="m",
     )
     hit_probability: float = param(
         0.7, "log_odds: belief in an obstacle after one hit", above=0.5, below=1.0
@@ -127,10 +105,7 @@ class MapMemoryParams(Params):
 
     def check(self) -> None:
         if self.footprint_m:
-            try:
-                Footprint.from_flat(self.footprint_m)
-            except InvalidValueError as error:
-                raise ParameterError(f"parameter 'footprint_m': {error}") from None
+            check_footprint(self.footprint_m)
         if self.max_size_m < self.size_m:
             raise ParameterError(
                 f"parameter 'max_size_m': {self.max_size_m} m; must be at least "

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from navette.errors import ParameterError
-from navette.params import Params, param
+from navette.navigation.shared_params import FrameParams
+from navette.params import param
 
 TREES = Path(__file__).parent / "trees"
 
@@ -19,27 +20,25 @@ def tree_path(name: str) -> Path:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MissionParams(Params):
+class MissionParams(FrameParams):
     """Goals, timeout and failure rule."""
 
-    map_frame: str = param("map", "frame of the goals and of the pose")
-    base_frame: str = param("base_link", "frame whose path length is measured")
-    goals_m: tuple[float, ...] = param((), "initial goals: x1, y1, …", unit="m")
+    goals_m: tuple[float, ...] = param((), "initial goals: x1, y1, …")
     goal_timeout_s: float = param(
-        300.0, "time after which a goal fails (timed_out); 0: no limit", unit="s",
-        at_least=0.0,
-    )  # fmt: skip
+        300.0, "time after which a goal fails (timed_out); 0: no limit", at_least=0.0
+    )
     on_failure: str = param(
         "continue", "what to do after a failed goal", choices=("continue", "stop")
     )
     wait_for_map: bool = param(True, "send the first goal after a map has arrived")
     rate_hz: float = param(
-        10.0, "rate of checks and of ticking the behaviour tree", unit="Hz",
-        at_least=1.0, at_most=1000.0,
-    )  # fmt: skip
+        10.0,
+        "rate of checks and of ticking the behaviour tree",
+        at_least=1.0,
+        at_most=1000.0,
+    )
     default_nav_to_pose_bt_xml: str = param(
-        "",
-        "behaviour tree of navigate_to_pose: a file, or precise; empty: Navette's",
+        "", "behaviour tree of navigate_to_pose: a file, or precise; empty: Navette's"
     )
     default_nav_through_poses_bt_xml: str = param(
         "", "file of the behaviour tree of navigate_through_poses; empty: Navette's"

@@ -2,49 +2,34 @@
 
 from dataclasses import dataclass
 
-from navette.errors import InvalidValueError, ParameterError
-from navette.geometry import ACKERMANN, DIFFERENTIAL, DRIVES, Footprint
+from navette.errors import ParameterError
+from navette.geometry import ACKERMANN
 from navette.navigation.planning.methods import PLANNERS
-from navette.params import Params, param
+from navette.navigation.shared_params import BendParams
+from navette.params import param
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlannerParams(Params):
+class PlannerParams(BendParams):
     """Costs, clearances, tolerances and timeouts of the planner."""
 
-    map_frame: str = param("map", "frame of the map and of the path")
-    base_frame: str = param("base_link", "frame that is driven: the axle's midpoint")
     method: str = param(
         "a_star", "search on the grid, or a planner of your own", choices=PLANNERS
     )
 
-    drive: str = param(
-        DIFFERENTIAL,
-        "motions of the base: turns in place, bends of a least radius (ackermann), or "
-        "sideways, too (omni)",
-        choices=DRIVES,
-    )
-    min_turning_radius_m: float = param(
-        0.0, "ackermann: least radius of a bend", unit="m", at_least=0.0
-    )
-    footprint_m: tuple[float, ...] = param(
-        (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
-        "corners x1, y1, x2, y2, … of the body in the base frame",
-        unit="m",
-    )
     clearance_margin_m: float = param(
-        0.15, "clearance between body and obstacles", unit="m", at_least=0.0,
-        at_most=10.0,
-    )  # fmt: skip
+        0.15, "clearance between body and obstacles", at_least=0.0, at_most=10.0
+    )
     tight_margin_m: float = param(
-        0.03, "clearance where no path has clearance_margin_m", unit="m",
-        at_least=0.0, at_most=10.0,
-    )  # fmt: skip
+        0.03,
+        "clearance where no path has clearance_margin_m",
+        at_least=0.0,
+        at_most=10.0,
+    )
     comfort_m: float = param(
         0.3,
         "additional clearance, beyond the margin and the circle of a turn in place, "
         "where there is room",
-        unit="m",
         at_least=0.0,
         at_most=10.0,
     )
@@ -53,9 +38,6 @@ class PlannerParams(Params):
         "additional cost of a metre at the least clearance, relative to a free one",
         at_least=0.0,
         at_most=50.0,
-    )
-    lethal_cost: int = param(
-        100, "map cost from which a cell is an obstacle", at_least=1, at_most=100
     )
     map_cost_weight: float = param(
         0.0,
@@ -75,52 +57,40 @@ class PlannerParams(Params):
     moving_horizon_s: float = param(
         2.0,
         "paths avoid where moving obstacles will be within this time; 0: nowhere",
-        unit="s",
         at_least=0.0,
         at_most=10.0,
     )
     goal_tolerance_m: float = param(
-        0.5, "distance that counts as reached; a goal may be moved by it", unit="m",
-        above=0.0,
-    )  # fmt: skip
+        0.5, "distance that counts as reached; a goal may be moved by it", above=0.0
+    )
     path_end_tolerance_m: float = param(
-        0.1, "distance to the path's end that counts as reached without stopping",
-        unit="m", above=0.0,
-    )  # fmt: skip
-    goal_yaw_tolerance_rad: float = param(
-        0.2, "heading error at which a goal pose counts as reached", unit="rad",
-        above=0.0, at_most=3.2,
-    )  # fmt: skip
-    deviation_m: float = param(
-        0.8,
-        "distance from the path at which the planner plans again",
-        unit="m",
+        0.1,
+        "distance to the path's end that counts as reached without stopping",
         above=0.0,
     )
+    goal_yaw_tolerance_rad: float = param(
+        0.2,
+        "heading error at which a goal pose counts as reached",
+        above=0.0,
+        at_most=3.2,
+    )
+    deviation_m: float = param(
+        0.8, "distance from the path at which the planner plans again", above=0.0
+    )
     path_spacing_m: float = param(
-        0.1, "largest distance between poses of the path", unit="m", at_least=0.01
+        0.1, "largest distance between poses of the path", at_least=0.01
     )
     turn_threshold_rad: float = param(
         0.8,
         "heading error above which the path begins with a turn in place",
-        unit="rad",
         above=0.0,
         at_most=3.2,
     )
     turn_cost_m_per_rad: float = param(
-        0.5, "cost of turning in place, in metres per radian", unit="m/rad",
-        at_least=0.0,
-    )  # fmt: skip
+        0.5, "cost of turning in place, in metres per radian", at_least=0.0
+    )
     reverse_factor: float = param(
         1.5, "cost of a metre in reverse, in metres forward", at_least=1.0
-    )
-    blind_reverse_m: float = param(
-        0.1,
-        "how far the body may leave its outline, where the robot was put down, into "
-        "space behind it that no beam has seen, backing up and turning",
-        unit="m",
-        at_least=0.0,
-        at_most=10.0,
     )
     max_expansions: int = param(
         40_000,
@@ -130,26 +100,26 @@ class PlannerParams(Params):
     )
 
     plan_period_s: float = param(
-        0.5, "period of checking goal, progress and path", unit="s", at_least=0.001
+        0.5, "period of checking goal, progress and path", at_least=0.001
     )
     odometry_timeout_s: float = param(
-        0.5, "age at which odometry is stale and the robot stops", unit="s", above=0.0
+        0.5, "age at which odometry is stale and the robot stops", above=0.0
     )
     progress_timeout_s: float = param(
-        6.0, "time without progress along the path before planning again", unit="s",
-        above=0.0,
-    )  # fmt: skip
+        6.0, "time without progress along the path before planning again", above=0.0
+    )
     progress_distance_m: float = param(
-        0.2, "least progress along the path that counts", unit="m", above=0.0
+        0.2, "least progress along the path that counts", above=0.0
     )
     max_stuck_replans: int = param(
-        4, "replans without progress before the goal fails (stuck)", at_least=0,
+        4,
+        "replans without progress before the goal fails (stuck)",
+        at_least=0,
         at_most=1_000_000,
-    )  # fmt: skip
+    )
     goal_timeout_s: float = param(
-        0.0, "time for one goal before it fails (timed_out); 0: no limit", unit="s",
-        at_least=0.0,
-    )  # fmt: skip
+        0.0, "time for one goal before it fails (timed_out); 0: no limit", at_least=0.0
+    )
     switch_gain: float = param(
         0.15,
         "share by which a new path must be cheaper to replace a valid one",
@@ -163,15 +133,7 @@ class PlannerParams(Params):
         return self.drive != ACKERMANN
 
     def check(self) -> None:
-        if self.turns_in_place != (self.min_turning_radius_m == 0):
-            raise ParameterError(
-                f"min_turning_radius_m {self.min_turning_radius_m:g}: must be > 0 with "
-                f"drive {ACKERMANN!r} and 0 with others; drive is {self.drive!r}"
-            )
-        try:
-            Footprint.from_flat(self.footprint_m)
-        except InvalidValueError as error:
-            raise ParameterError(f"parameter 'footprint_m': {error}") from error
+        super().check()
         if self.path_end_tolerance_m > self.goal_tolerance_m:
             raise ParameterError(
                 f"parameter 'path_end_tolerance_m': {self.path_end_tolerance_m!r} is "

@@ -42,7 +42,6 @@ class DistanceParams(Params):
         2.0,
         "longest time between two consecutive messages; after a longer gap (a bag was "
         "set forward) counting continues from the new message",
-        unit="s",
         above=0.0,
     )
 

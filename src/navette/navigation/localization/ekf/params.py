@@ -65,12 +65,11 @@ class EkfParams(Params):
     """Inputs of the filter, their use, and the noise of the motion model."""
 
     frequency_hz: float = param(
-        30.0, "rate of published estimates", unit="Hz", at_least=0.1, at_most=1000.0
+        30.0, "rate of published estimates", at_least=0.1, at_most=1000.0
     )
     sensor_timeout_s: float = param(
         0.5,
         "how long the filter predicts without a measurement; then it publishes nothing",
-        unit="s",
         above=0.0,
     )
     two_d_mode: bool = param(True, "always true: the filter is planar")
@@ -100,18 +99,16 @@ class EkfParams(Params):
         1.0,
         "largest age of a late measurement relative to the newest; an older one is "
         "dropped",
-        unit="s",
         at_least=0.0,
         at_most=60.0,
     )
     max_gap_s: float = param(
         10.0,
         "a longer gap in the stamps (a bag was set forward) resets the filter",
-        unit="s",
         above=0.0,
     )
     gravitational_acceleration_mps2: float = param(
-        9.80665, "reading of an accelerometer at rest", unit="m/s²"
+        9.80665, "reading of an accelerometer at rest"
     )
 
     odom0: str = _topic("nav_msgs/msg/Odometry")
@@ -160,7 +157,6 @@ class EkfParams(Params):
         (),
         "latitude and longitude of the world frame's origin, whose x axis points "
         "east; empty = the first fix",
-        unit="deg",
     )
 
     @property

@@ -3,39 +3,39 @@
 from dataclasses import dataclass
 
 from navette.navigation.missions.explore.frontiers import FrontierParams
-from navette.params import Params, param
+from navette.navigation.shared_params import FrameParams
+from navette.params import param
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExplorerParams(Params):
+class ExplorerParams(FrameParams):
     """Which frontiers are driven to, and when exploration ends."""
 
-    map_frame: str = param("map", "frame of the map and of the goals")
-    base_frame: str = param("base_link", "frame that is driven")
     clearance_m: float = param(
-        0.35, "distance of a goal from obstacles", unit="m", at_least=0.0, at_most=10.0
+        0.35, "distance of a goal from obstacles", at_least=0.0, at_most=10.0
     )
     lethal_cost: int = param(
         100, "map cost from which a cell is an obstacle", at_least=1, at_most=100
     )
-    min_frontier_m: float = param(
-        0.6, "shorter frontiers are ignored", unit="m", above=0.0
-    )
+    min_frontier_m: float = param(0.6, "shorter frontiers are ignored", above=0.0)
     viewpoint_m: float = param(
-        2.0, "largest distance from a frontier to the goal in front of it", unit="m",
-        above=0.0, at_most=10.0,
-    )  # fmt: skip
+        2.0,
+        "largest distance from a frontier to the goal in front of it",
+        above=0.0,
+        at_most=10.0,
+    )
     frontier_gain: float = param(
         1.0, "metres of way that a metre of frontier is worth", at_least=0.0
     )
     map_timeout_s: float = param(
-        15.0, "exploration ends if no map has arrived for this long", unit="s",
-        above=0.0,
-    )  # fmt: skip
+        15.0, "exploration ends if no map has arrived for this long", above=0.0
+    )
     max_failures: int = param(
-        8, "goals that fail one after another before exploration ends", at_least=1,
+        8,
+        "goals that fail one after another before exploration ends",
+        at_least=1,
         at_most=1_000_000,
-    )  # fmt: skip
+    )
 
     @property
     def frontier(self) -> FrontierParams:
