@@ -76,6 +76,8 @@ export interface ConnectionStatus {
   readonly state: "connecting" | "live" | "lost";
   /** Empty, or why the connection was lost or a login is required. */
   readonly reason: string;
+  /** The server requires another token; it is not tried again by itself. */
+  readonly needsToken?: boolean;
 }
 
 /** Removes what was added: a subscription, a listener, a channel. */
