@@ -26,6 +26,7 @@ SUMMARY_KEYS = {
     "wall_time_s",
     "real_time_factor",
     "seed",
+    "pose_error_m",
 }
 
 

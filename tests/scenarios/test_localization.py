@@ -14,8 +14,6 @@ from navette.sim.node import SimNode
 
 GOAL = (12.0, 0.0)
 ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
-# Wheel odometry is an input of the filter; its transform is not used.
-REMAP = "--ros-args -r /odom/filtered:=/wheels/odometry -r /tf:=/tf_of_wheels".split()
 
 
 def config(*names: str) -> list[bool]:
@@ -48,9 +46,14 @@ def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
     with context:
         resolved.override_parameters(context.overrides)
         context.overrides.add("missions", {"goals_m": list(GOAL)}, "test")
-        noisy = {"odometry": "wheel", "wheel_noise_m": 0.02, "odometry_child_frame": ""}
+        noisy = {
+            "localization": "odometry",
+            "wheel_noise_m": 0.02,
+            "filters_odometry": True,
+            "odometry_child_frame": "",
+        }
         context.overrides.add("sim", noisy, "test")
-        sim = SimNode(resolved.scene, context=context, cli_args=REMAP)
+        sim = SimNode(resolved.scene, context=context)
         ekf = filter_for(sim, context)
         stack = NavigationStack.create(context)
         executor = Executor(context=context)

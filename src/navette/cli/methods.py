@@ -49,6 +49,16 @@ class MethodOptions:
         ),
     ] = None
 
+    localization: Annotated[
+        str | None,
+        Option(
+            metavar="truth|odometry|slam|amcl",
+            help="Where the robot's pose comes from: the simulator's true pose, noisy"
+            " wheel odometry alone, or that corrected by SLAM, or by AMCL on a known"
+            " map (--map). Default: truth.",
+        ),
+    ] = None
+
     replace: Annotated[
         list[str] | None,
         Option(
@@ -117,5 +127,6 @@ class MethodOptions:
             "controller": self.controller,
             "costmap": self.costmap,
             "mapping": self.mapping,
+            "localization": self.localization,
         }
         return {kind: name for kind, name in given.items() if name is not None}

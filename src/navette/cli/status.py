@@ -11,6 +11,7 @@ from rich.text import Text
 
 from navette.msgs.topics import CMD_VEL_NAV
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.pose_error import PoseError
 from navette.navigation.stack.summary import RunSummary
 from navette.runtime.stage.commander import Commander
 
@@ -22,6 +23,7 @@ _REFRESH_HZ = 8
 _WIDTH = 24
 _BESIDE_BAR = 60  # columns that the figures beside the bar may take
 _LONG_M = 1e6  # coordinates from here on are shown with an exponent
+_EXACT_M = 0.005  # a smaller error of the pose is not shown
 _CANCELED = "canceled"
 
 
@@ -77,6 +79,7 @@ class StatusScreen:
             else "no goals",
             f"{summary.contacts} contact{'' if summary.contacts == 1 else 's'}",
             f"minimum clearance {clearance:.2f} m" if clearance is not None else "",
+            _pose_error(summary.pose_error_m),
             f"{summary.sim_time_s:.1f} s simulated in {summary.wall_time_s:.1f} s "
             f"(×{summary.real_time_factor:.1f})",
         ]
@@ -177,6 +180,16 @@ class StatusScreen:
         self._longest_m[progress.goal_id] = longest
         done = round(width * (1 - left / longest))
         return Text.assemble(("━" * done, "green"), ("─" * (width - done), "dim"))
+
+
+def _pose_error(error: PoseError) -> str:
+    """Return the error of the estimated pose; empty if it is the true one."""
+    if error.final is None:
+        return "pose unknown"
+    if error.worst is not None and error.worst < _EXACT_M:
+        return ""
+    worst = "never localized" if error.worst is None else f"worst {error.worst:.2f} m"
+    return f"pose error {error.final:.2f} m ({worst})"
 
 
 def _left(progress: "RunProgress") -> str:

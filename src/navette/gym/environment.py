@@ -201,7 +201,7 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     def _observe(self) -> Observation:
         simulator = self._world.simulator
         self._scan = simulator.scan()
-        if simulator.params.odometry == "wheel":
+        if not simulator.params.believes_truth:
             wheels = simulator.wheel_odometry()
             pose, motion = wheels.pose, wheels.motion()
             velocity = (motion.speed, motion.yaw_rate, motion.side)

@@ -36,6 +36,11 @@ ODOMETRY = StackTopic("/odom/filtered", "nav_msgs/msg/Odometry")
 AMCL_POSE = StackTopic(
     "/amcl_pose", "geometry_msgs/msg/PoseWithCovarianceStamped", 1, True
 )
+WHEEL_ODOMETRY = StackTopic("/wheels/odometry", "nav_msgs/msg/Odometry")
+LOCALIZATION_STATUS = StackTopic(
+    "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", 1, True
+)
+PARTICLES = StackTopic("/particle_cloud", "nav2_msgs/msg/ParticleCloud", 1)
 GNSS = StackTopic("/gnss_driver/odometry", "gnss_driver/msg/Gps", 1)
 DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 

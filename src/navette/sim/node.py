@@ -9,6 +9,7 @@ from navette.geometry import Pose2, Transform3
 from navette.msgs import topics
 from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
+from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import Bool, Empty, String
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -79,6 +80,11 @@ class SimNode(StageNode):
         Output.of(topics.CAMERA, "image", rate_hz=30),
         Output.of(topics.CAMERA_INFO, "intrinsics of the camera", rate_hz=30),
         Output.of(topics.ODOMETRY, "estimated pose and velocity", rate_hz=50),
+        Output.of(
+            topics.WHEEL_ODOMETRY,
+            "dead reckoning by the wheels, for a filter",
+            rate_hz=50,
+        ),
         Output.of(
             topics.GROUND_TRUTH,
             "true pose of the axle midpoint in the world frame",
@@ -179,11 +185,16 @@ class SimNode(StageNode):
     def on_params_changed(self, old: SimParams) -> None:
         self.simulator.change_params(self.params)
 
+    @property
+    def stamp_ns(self) -> int:
+        """Stamp of the simulator's state."""
+        return self._origin_ns + self.simulator.now_ns
+
     def _advance(self) -> int:
         """Advance physics to the current time; return the stamp of its state."""
         now_ns = self.get_clock().now_ns
         self.simulator.advance_to(now_ns - self._origin_ns)
-        return self._origin_ns + self.simulator.now_ns
+        return self.stamp_ns
 
     # Outputs
 
@@ -193,10 +204,10 @@ class SimNode(StageNode):
             messages.transform_message(stamp, f.parent, f.name, f.parent_T_frame)
             for f in self.frames.fixed
         ]
-        if p.odom_frame != p.map_frame:
+        if p.odometry_frame != p.map_frame and not p.is_corrected:
             origin = Transform3.identity()
             transforms.append(
-                messages.transform_message(stamp, p.map_frame, p.odom_frame, origin)
+                messages.transform_message(stamp, p.map_frame, p.odometry_frame, origin)
             )
         self.publish(topics.TF_STATIC.name, TFMessage(transforms=transforms))
         compiled = self.simulator.compiled
@@ -210,9 +221,12 @@ class SimNode(StageNode):
         p = self.params
         self.create_timer(_HEARTBEAT_S, self._beat)
         self._every(p.clock_rate_hz, self._publish_clock, topics.CLOCK.name)
-        self._every(p.odometry_rate_hz, self._publish_odometry, topics.ODOMETRY.name)
-        self._every(p.odometry_rate_hz, self._publish_truth, topics.GROUND_TRUTH.name)
-        self._every(p.tf_rate_hz, self._publish_base_tf, topics.TF.name)
+        rate_hz, wheels = p.odometry_rate_hz, topics.WHEEL_ODOMETRY.name
+        self._every(rate_hz, self._publish_wheels, wheels)
+        if not p.filters_odometry:
+            self._every(rate_hz, self._publish_odometry, topics.ODOMETRY.name)
+            self._every(p.tf_rate_hz, self._publish_base_tf, topics.TF.name)
+        self._every(rate_hz, self._publish_truth, topics.GROUND_TRUTH.name)
         joints = topics.JOINT_STATES.name
         self._every(p.joint_tf_rate_hz, self._publish_joints, joints)
         if self.simulator.actors:
@@ -303,30 +317,44 @@ class SimNode(StageNode):
         self.publish(topics.CLOCK.name, Clock(clock=messages.time_message(stamp_ns)))
 
     def _publish_odometry(self, stamp_ns: int) -> None:
-        odom_T_base, motion, covariances = self._odometry()
-        message = messages.odometry_message(
-            stamp_ns,
-            (self.params.odom_frame, self._child_frame),
-            odom_T_base,
-            motion,
-            self._base_T_child,
-            covariances,
-        )
+        if self.params.believes_truth:
+            pose, motion = self.simulator.pose(), self.simulator.motion()
+            message = self._odometry_message(stamp_ns, pose, motion, None)
+        else:
+            message = self._wheel_message(stamp_ns)
         self.publish(topics.ODOMETRY.name, message)
 
-    def _odometry(self) -> tuple[Transform3, Motion, PlanarCovariances | None]:
-        if self.params.odometry == "true":
-            return self.simulator.pose(), self.simulator.motion(), None
+    def _publish_wheels(self, stamp_ns: int) -> None:
+        self.publish(topics.WHEEL_ODOMETRY.name, self._wheel_message(stamp_ns))
+
+    def _wheel_message(self, stamp_ns: int) -> Odometry:
         wheels = self.simulator.wheel_odometry()
         reported = wheels.motion()
         motion = Motion(
             (reported.speed, reported.side, 0.0), (0.0, 0.0, reported.yaw_rate)
         )
         covariances = PlanarCovariances(wheels.pose_covariance, reported.covariance)
-        return Transform3.from_pose2(wheels.pose), motion, covariances
+        pose = Transform3.from_pose2(wheels.pose)
+        return self._odometry_message(stamp_ns, pose, motion, covariances)
+
+    def _odometry_message(
+        self,
+        stamp_ns: int,
+        odom_T_base: Transform3,
+        motion: Motion,
+        covariances: PlanarCovariances | None,
+    ) -> Odometry:
+        return messages.odometry_message(
+            stamp_ns,
+            (self.params.odometry_frame, self._child_frame),
+            odom_T_base,
+            motion,
+            self._base_T_child,
+            covariances,
+        )
 
     def _believed_pose(self) -> Transform3:
-        if self.params.odometry == "true":
+        if self.params.believes_truth:
             return self.simulator.pose()
         return Transform3.from_pose2(self.simulator.wheel_odometry().pose)
 
@@ -343,7 +371,7 @@ class SimNode(StageNode):
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params
         transform = messages.transform_message(
-            stamp_ns, p.odom_frame, p.base_frame, self._believed_pose()
+            stamp_ns, p.odometry_frame, p.base_frame, self._believed_pose()
         )
         self.publish(topics.TF.name, TFMessage(transforms=[transform]))
 

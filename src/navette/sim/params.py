@@ -38,16 +38,62 @@ class SimParams(Params):
         3.0, "Ackermann: fastest change of the steering angle", above=0.0
     )
 
-    odometry: str = param(
-        "true",
-        "source of /odom/filtered: true pose, or dead reckoning by the wheels",
-        choices=("true", "wheel"),
+    localization: str = param(
+        "truth",
+        "source of the pose: the true pose; wheel odometry, which drifts "
+        "(map = odom); or wheel odometry that slam or amcl corrects by map → odom",
+        choices=("truth", "odometry", "slam", "amcl"),
+    )
+    filters_odometry: bool = param(
+        False,
+        "whether a filter (ekf) publishes /odom/filtered and its transform, from "
+        "/wheels/odometry and /imu; false: wheel odometry is published as it is",
     )
     wheel_noise_m: float = param(
-        0.0,
-        "stddev of a wheel's measured travel after 1 m; grows with its square root",
-        at_least=0.0,
+        -1.0,
+        "stddev of a wheel's measured travel after 1 m; grows with its square root; "
+        "-1 = 0.01, and 0 with localization 'truth'",
+        at_least=-1.0,
         at_most=0.5,
+    )
+    wheel_scale_error: float = param(
+        0.0,
+        "stddev of the constant relative error of each side's travel (wheel radius, "
+        "tyre pressure), drawn once per seed",
+        at_least=0.0,
+        at_most=0.2,
+    )
+    wheel_slip_interval_m: float = param(
+        0.0,
+        "mean distance between two sudden slips of a wheel; 0 = none",
+        at_least=0.0,
+    )
+    wheel_slip_m: float = param(
+        0.05, "stddev of the false travel of a slip", at_least=0.0, at_most=1.0
+    )
+    imu_turn_rate_noise_radps: float = param(
+        -1.0,
+        "stddev of the IMU's turn rates; -1 = value of the robot's file",
+        at_least=-1.0,
+        at_most=1.0,
+    )
+    imu_acceleration_noise_mps2: float = param(
+        -1.0,
+        "stddev of the IMU's specific force; -1 = value of the robot's file",
+        at_least=-1.0,
+        at_most=10.0,
+    )
+    imu_turn_rate_bias_radps: float = param(
+        0.0,
+        "stddev of the constant error of the IMU's turn rates, drawn once per seed",
+        at_least=0.0,
+        at_most=1.0,
+    )
+    imu_heading_drift_rad: float = param(
+        0.0,
+        "stddev of the IMU's heading after 1 s; grows with the square root of time",
+        at_least=0.0,
+        at_most=1.0,
     )
     lidar_noise_m: float = param(
         -1.0, "stddev of ranges; -1 = value of the robot's file", at_least=-1.0
@@ -80,6 +126,29 @@ class SimParams(Params):
         10.0, "/tf and /joint_states of the wheels", at_least=0.01, at_most=50.0
     )
 
+    @property
+    def believes_truth(self) -> bool:
+        """Whether the published odometry is the true pose."""
+        return self.localization == "truth"
+
+    @property
+    def is_corrected(self) -> bool:
+        """Whether another node publishes map → odom."""
+        return self.localization in ("slam", "amcl")
+
+    @property
+    def odometry_frame(self) -> str:
+        """Frame of the odometry; its own if map → odom is corrected."""
+        own = self.is_corrected and self.odom_frame == self.map_frame
+        return "odom" if own else self.odom_frame
+
+    @property
+    def wheel_stddev_m(self) -> float:
+        """Standard deviation of a wheel's measured travel after 1 m."""
+        if self.wheel_noise_m >= 0.0:
+            return self.wheel_noise_m
+        return 0.0 if self.believes_truth else 0.01
+
     def check(self) -> None:
         steps = CONTROL_PERIOD_S / self.timestep_s
         if abs(steps - round(steps)) > 1e-6:
@@ -92,7 +161,10 @@ class SimParams(Params):
 # Parameters that are read at the start only.
 FIXED_AT_START = frozenset(
     {
-        *("timestep_s", "seed", "camera_renderer", "odometry", "wheel_noise_m"),
+        *("timestep_s", "seed", "camera_renderer", "localization", "wheel_noise_m"),
+        *("filters_odometry", "wheel_scale_error", "wheel_slip_interval_m"),
+        *("wheel_slip_m", "imu_turn_rate_noise_radps", "imu_acceleration_noise_mps2"),
+        *("imu_turn_rate_bias_radps", "imu_heading_drift_rad"),
         *("map_frame", "odom_frame", "base_frame", "odometry_child_frame"),
         *("link_frame_prefix", "clock_rate_hz", "odometry_rate_hz", "tf_rate_hz"),
         "joint_tf_rate_hz",

@@ -2,13 +2,14 @@
 """Create the sensors of a robot's model."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TypeVar
 
 from navette.sim.bodies import camera_name
 from navette.sim.build import Compiled
 from navette.sim.camera import Camera
 from navette.sim.camera_gl import GlCamera, wants_gl
-from navette.sim.imu import Imu
+from navette.sim.imu import Imu, ImuErrors
 from navette.sim.lidar import Lidar
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
@@ -30,9 +31,19 @@ def lidars_of(compiled: Compiled, params: SimParams) -> Iterator[Lidar]:
         yield Lidar(sensor, _mount(compiled, link, sensor), params, compiled.model)
 
 
-def imus_of(compiled: Compiled) -> Iterator[Imu]:
+def imus_of(compiled: Compiled, params: SimParams) -> Iterator[Imu]:
+    """Create the IMUs, with the noise of the parameters if they state one."""
+    errors = ImuErrors(params.imu_turn_rate_bias_radps, params.imu_heading_drift_rad)
+    turn_rate, acceleration = (
+        params.imu_turn_rate_noise_radps,
+        params.imu_acceleration_noise_mps2,
+    )
     for link, sensor in sensors_of(compiled.robot.model, ImuSensor):
-        yield Imu(sensor, _mount(compiled, link, sensor))
+        if turn_rate >= 0.0:
+            sensor = replace(sensor, angular_velocity_stddev=turn_rate)
+        if acceleration >= 0.0:
+            sensor = replace(sensor, acceleration_stddev=acceleration)
+        yield Imu(sensor, _mount(compiled, link, sensor), errors)
 
 
 def cameras_of(compiled: Compiled, params: SimParams) -> Iterator[Camera | GlCamera]:

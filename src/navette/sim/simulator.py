@@ -35,7 +35,7 @@ from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
 from navette.sim.scene import AckermannDrive, Scene
 from navette.sim.sensors import cameras_of, imus_of, lidars_of
-from navette.sim.wheel_odometry import WheelOdometry
+from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
 _TOUCHES_M = 0.01  # a world's own robot may touch obstacles, but not overlap them
@@ -80,10 +80,11 @@ class Simulator:
         self._probe = ClearanceProbe(self.compiled, self._data)
         self.contacts = ContactMonitor(self.compiled, self._data)
         self.lidars = tuple(lidars_of(self.compiled, self.params))
-        self.imus = tuple(imus_of(self.compiled))
+        self.imus = tuple(imus_of(self.compiled, self.params))
         self.cameras = tuple(cameras_of(self.compiled, self.params))
-        drive = self.compiled.robot.drive
-        self._wheel_odometry = WheelOdometry(drive, noise=self.params.wheel_noise_m)
+        self._wheel_odometry = WheelOdometry(
+            self.compiled.robot.drive, _wheel_errors(self.params)
+        )
         self.reset()
 
     def reset(self, *, start: Pose2 | None = None, seed: int | None = None) -> None:
@@ -114,7 +115,8 @@ class Simulator:
             )  # slightly above the floor: no contact to resolve yet
             self.state.place(Transform3.from_pose2(self._start, z=floor))
         for imu in self.imus:
-            imu.reset()
+            imu.reset(self._imu_rng)
+        self._wheel_odometry.draw_scales(self._wheel_rng)
         self._wheel_odometry.reset(
             self.pose().to_pose2(), self.state.wheel_travel(), self.state.wheel_slide()
         )
@@ -311,3 +313,12 @@ class Simulator:
         slide = self.state.wheel_slide()
         self._wheel_odometry.update(wheels, self.now_ns, self._wheel_rng, slide=slide)
         return self._wheel_odometry
+
+
+def _wheel_errors(params: SimParams) -> WheelErrors:
+    return WheelErrors(
+        params.wheel_stddev_m,
+        params.wheel_scale_error,
+        params.wheel_slips_per_m,
+        params.wheel_slip_m,
+    )

@@ -56,19 +56,43 @@ class PlanarCovariances:
         )
 
 
+@dataclass(frozen=True)
+class WheelErrors:
+    """Errors of the measured travel of each side of the drive.
+
+    Attributes:
+        noise: standard deviation (m) after 1 m; the variance grows with the distance.
+        scale: standard deviation of a constant relative error, drawn once per run.
+        slips_per_m: mean number of sudden slips per metre.
+        slip_m: standard deviation of the false travel of a slip (m).
+    """
+
+    noise: float = 0.0
+    scale: float = 0.0
+    slips_per_m: float = 0.0
+    slip_m: float = 0.0
+
+
 class WheelOdometry:
     """Integrates wheel rotations along circular arcs.
 
-    Each side's measured travel has a random relative error, whose variance grows
-    with the distance: after 1 m its standard deviation is ``noise`` metres. The
-    covariances follow from it to first order (Siegwart, Nourbakhsh, Scaramuzza,
-    "Autonomous Mobile Robots", 2nd ed., section 5.2.4) and do not include slip.
+    The covariances follow from the noise of the measured travel to first order
+    (Siegwart, Nourbakhsh, Scaramuzza, "Autonomous Mobile Robots", 2nd ed., section
+    5.2.4) and include neither a wrong scale nor slip, as those of real encoders.
     """
 
-    def __init__(self, drive: DiffDrive, *, noise: float) -> None:
+    def __init__(self, drive: DiffDrive, errors: WheelErrors) -> None:
         self._drive = drive
-        self._noise = noise
+        self._errors = errors
+        self._noise = errors.noise
+        self._scales = (1.0, 1.0)
         self.reset(Pose2(0.0, 0.0, 0.0), (0.0, 0.0))
+
+    def draw_scales(self, rng: np.random.Generator) -> None:
+        """Draw the constant errors of this run."""
+        if self._errors.scale > 0.0:
+            left, right = (1.0 + self._errors.scale * rng.normal(size=2)).tolist()
+            self._scales = left, right
 
     def reset(
         self, pose: Pose2, wheels: tuple[float, float], slide: float = 0.0
@@ -105,7 +129,8 @@ class WheelOdometry:
         radius = self._drive.wheel_radius
         true_left = (wheels[0] - self._wheels[0]) * radius
         true_right = (wheels[1] - self._wheels[1]) * radius
-        left, right = self._measured(true_left, rng), self._measured(true_right, rng)
+        left = self._scales[0] * self._measured(true_left, rng)
+        right = self._scales[1] * self._measured(true_right, rng)
         self._wheels = wheels
         self._stamp_ns = stamp_ns
         # Variances of the measured travel would correlate with the errors that they
@@ -167,6 +192,10 @@ class WheelOdometry:
             self._covariance += self._noise**2 * abs(side) * np.outer(across, across)
 
     def _measured(self, travel: float, rng: np.random.Generator) -> float:
+        errors = self._errors
+        if errors.slips_per_m > 0.0:
+            slips = int(rng.poisson(errors.slips_per_m * abs(travel)))
+            travel += errors.slip_m * math.sqrt(slips) * float(rng.normal())
         if self._noise == 0:
             return travel
         return travel + self._noise * math.sqrt(abs(travel)) * float(rng.normal())

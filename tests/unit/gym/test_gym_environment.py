@@ -195,7 +195,7 @@ def test_a_lookahead_leads_round_the_obstacle() -> None:
 
 
 def test_wheel_odometry_is_observed_if_the_robot_has_it() -> None:
-    noisy = {"sim": {"odometry": "wheel", "wheel_noise_m": 0.3}}
+    noisy = {"sim": {"localization": "odometry", "wheel_noise_m": 0.3}}
     env = make(robot="jackal", parameters=noisy, limit_s=1000.0)
     env.reset(seed=1, options={"start": (-8, 0, 0), "goal": (9, 9)})
     for _ in range(40):

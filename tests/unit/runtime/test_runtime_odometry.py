@@ -119,6 +119,36 @@ def test_moving_odometry_frame(graph: GraphHarness, tracker: PoseTracker) -> Non
         assert tracker.latest == pytest.approx((x, 0, 0))
 
 
+def test_a_correction_moves_the_whole_history(
+    graph: GraphHarness, tracker: PoseTracker
+) -> None:
+    moving = TransformBroadcaster(graph.node)
+
+    def correct(stamp: int, x: float) -> None:
+        pose = Transform3.from_pose2(Pose2(x, 0, 0))
+        moving.sendTransform(transform_stamped("map", "odom", stamp * S, pose))
+        graph.run_for(0)
+
+    tracker.update(odometry(0, Pose2(0, 0, 0), frame="odom"))
+    correct(1, 0.0)
+    tracker.update(odometry(1 * S, Pose2(0, 0, 0), frame="odom"))
+    tracker.update(odometry(2 * S, Pose2(1, 0, 0), frame="odom"))
+    correct(3, 0.1)
+    tracker.update(odometry(3 * S, Pose2(2, 0, 0), frame="odom"))
+    assert tracker.jumps == 0
+    assert tracker.pose_at(round(1.5 * S)) == pytest.approx((0.6, 0, 0))
+    correct(4, 0.6)
+    tracker.update(odometry(4 * S, Pose2(3, 0, 0), frame="odom"))
+    assert tracker.jumps == 1
+    assert tracker.latest == pytest.approx((3.6, 0, 0))
+    assert tracker.pose_at(3 * S) == pytest.approx((2.6, 0, 0))
+    assert tracker.first == pytest.approx((0.6, 0, 0))
+    assert tracker.in_odom(Pose2(3.6, 0, 0)) == pytest.approx((3, 0, 0))
+    correct(5, 6.0)  # carried, or located for the first time
+    tracker.update(odometry(5 * S, Pose2(3, 0, 0), frame="odom"))
+    assert tracker.first == pytest.approx((9, 0, 0))
+
+
 def test_pose_at_a_stamp(tracker: PoseTracker) -> None:
     for second in range(1, 4):
         tracker.update(odometry(second * S, Pose2(second, 0, 0)))

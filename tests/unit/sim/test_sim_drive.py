@@ -9,7 +9,7 @@ from navette.geometry import Pose2
 from navette.sim import SimParams
 from navette.sim.drive import CONTROL_PERIOD_NS, BodySpeed, SpeedRamp
 from navette.sim.scene import DiffDrive
-from navette.sim.wheel_odometry import WheelOdometry
+from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 
 DRIVE = DiffDrive(
     left_joints=("l",), right_joints=("r",), wheel_separation=0.5, wheel_radius=0.1
@@ -58,7 +58,7 @@ def test_non_finite_commands_have_no_effect(bad: float) -> None:
 
 
 def test_wheel_odometry_of_a_circle_closes() -> None:
-    odometry = WheelOdometry(DRIVE, noise=0.0)
+    odometry = WheelOdometry(DRIVE, WheelErrors())
     rng = np.random.default_rng(0)
     start = Pose2(1.0, 2.0, 0.3)
     odometry.reset(start, (0.0, 0.0))
@@ -75,7 +75,7 @@ def test_wheel_odometry_of_a_circle_closes() -> None:
 def test_wheel_odometry_noise_grows_with_distance() -> None:
     ends = []
     for seed in range(200):
-        odometry = WheelOdometry(DRIVE, noise=0.02)
+        odometry = WheelOdometry(DRIVE, WheelErrors(0.02))
         rng = np.random.default_rng(seed)
         for i in range(1, 26):
             odometry.update((i * 1.6, i * 1.6), i, rng)  # 4 m in all

@@ -21,13 +21,13 @@ LIMITS = {
         max_reverse_speed_mps=3.0,
         max_accel_mps2=7.0,
         max_decel_mps2=7.0,
-        odometry="wheel",
+        localization="odometry",
     ),
     "mecanum": SimParams(
         max_accel_mps2=3.0,
         max_reverse_speed_mps=1.0,
         max_yaw_accel_radps2=8.0,
-        odometry="wheel",
+        localization="odometry",
     ),
 }
 

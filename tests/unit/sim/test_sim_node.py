@@ -296,7 +296,11 @@ def test_an_unknown_child_frame_lists_the_known() -> None:
 
 def test_wheel_odometry_drifts() -> None:
     run = _run(
-        World().scene(), robot="jackal", odometry="wheel", wheel_noise_m=0.05, seed=3
+        World().scene(),
+        robot="jackal",
+        localization="odometry",
+        wheel_noise_m=0.05,
+        seed=3,
     )
     run.listen("/odom/filtered", "/ground_truth")
     run.drive(0.5, 0.4)

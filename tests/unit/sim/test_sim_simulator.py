@@ -250,7 +250,9 @@ def test_imu_measures_gravity_turning_and_acceleration() -> None:
 
 def test_wheel_odometry_drifts_only_with_slip_and_noise() -> None:
     def error(noise: float) -> float:
-        params = SimParams(wheel_noise_m=noise, command_timeout_s=0.0, odometry="wheel")
+        params = SimParams(
+            wheel_noise_m=noise, command_timeout_s=0.0, localization="odometry"
+        )
         simulator = Simulator(_scene(World()), params, start=Pose2(1, 2, 0.5))
         simulator.command(0.8, 0.3)
         for _ in range(50):

@@ -13,6 +13,7 @@ from navette.sim.scene import DiffDrive
 from navette.sim.wheel_odometry import (
     LEAST_STDDEV,
     PlanarCovariances,
+    WheelErrors,
     WheelOdometry,
 )
 
@@ -26,7 +27,7 @@ STEP_NS = 20_000_000
 
 
 def odometry(noise: float) -> WheelOdometry:
-    return WheelOdometry(DRIVE, noise=noise)
+    return WheelOdometry(DRIVE, WheelErrors(noise))
 
 
 def drive(

@@ -19,11 +19,15 @@ class VelocityTarget(NamedTuple):
 
 
 class MeasuredMotion(NamedTuple):
-    """Pose of the base in the map and its motion (m/s, rad/s)."""
+    """Pose of the base in the map, its motion (m/s, rad/s), and its pose in odom.
+
+    The pose in odom is continuous, for lengths of motions; the one in the map may jump.
+    """
 
     pose: Pose2
     speed: float
     turn_rate: float
+    odom_T_base: Pose2
 
 
 class BaseMotion(Protocol):
@@ -56,8 +60,8 @@ class DriveStraight:
         self.progress = 0.0
 
     def step(self, now: MeasuredMotion) -> VelocityTarget | None:
-        self._start = self._start or now.pose
-        self.progress = self._start.distance_to(now.pose)
+        self._start = self._start or now.odom_T_base
+        self.progress = self._start.distance_to(now.odom_T_base)
         left = abs(self._distance) - self.progress
         if left <= self._params.distance_tolerance_m:
             return None
@@ -85,8 +89,8 @@ class TurnBy:
 
     def step(self, now: MeasuredMotion) -> VelocityTarget | None:
         if self._yaw is not None:
-            self._turned += angle_difference(now.pose.yaw, self._yaw)
-        self._yaw = now.pose.yaw
+            self._turned += angle_difference(now.odom_T_base.yaw, self._yaw)
+        self._yaw = now.odom_T_base.yaw
         left = abs(self._angle) - math.copysign(1.0, self._angle) * self._turned
         if left <= self._params.yaw_tolerance_rad:
             return None

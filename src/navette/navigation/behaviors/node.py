@@ -112,7 +112,10 @@ class BehaviorNode(StageNode):
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest pose."""
+        jumps = self._tracker.jumps
         if self._tracker.update(msg):
+            if self._tracker.jumps != jumps:
+                self._obstacles.relocate()
             self._located_ns = self._now_ns
             self._odometry_period.note(self._now_ns)
 
@@ -230,7 +233,9 @@ class BehaviorNode(StageNode):
         )
         if self._is_recent(self._located_ns, odometry_timeout_s):
             pose = self._tracker.predicted_now(self._now_ns)
-            motion = pose and MeasuredMotion(pose, *self._tracker.velocity)
+            motion = pose and MeasuredMotion(
+                pose, *self._tracker.velocity, self._tracker.in_odom(pose)
+            )
         placed_ns = self._obstacles.placed_ns
         recent = self._is_recent(placed_ns, costmap_timeout_s)
         return BehaviorInputs(motion, recent)

@@ -468,9 +468,18 @@ class ControlNode(StageNode):
         return 2 * max(0.0, age_s - 1 / params.rate_hz)
 
     def _locate(self) -> None:
+        jumps = self._tracker.jumps
         if self._odometry is not None and self._tracker.update(self._odometry):
             self._located_ns = self._odometry_ns
         self._odometry = None
+        if self._tracker.jumps != jumps:
+            self._relocate()
+
+    def _relocate(self) -> None:
+        """Follow the path from where the robot is on it after a jump of the pose."""
+        self._obstacles.relocate()
+        if self._follower.has_path:
+            self._try_path(self._path)
 
     def _ages(self) -> InputAges:
         params: ControlParams = self.params

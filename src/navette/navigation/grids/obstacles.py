@@ -88,6 +88,7 @@ class ObstacleTracker:
         self._map_masks: tuple[int, Masks] | None = None  # of the map with this stamp
         self._map_hits, self._hits = HitPoints(), HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
+        self._placed: OccupancyGrid | None = None  # newest that was placed
         self._costmap_ns: int | None = None
         #: Arrival of the costmap that was placed last; None before the first.
         self.placed_ns: int | None = None
@@ -105,6 +106,14 @@ class ObstacleTracker:
         self._map = grid_from_message(msg)
         self._map_ns = _stamp_ns(msg)
         self._seen = _seen_also(Layer(*self._map), self._seen)
+
+    def relocate(self) -> None:
+        """Place the newest costmap again: the robot's pose in the map has jumped.
+
+        What maps have shown near the robot was somewhere else.
+        """
+        self._costmap = self._costmap or self._placed
+        self._seen = None
 
     def receive_points(self, msg: PointCloud2) -> None:
         """Use the points for the costmap with the same stamp.
@@ -143,7 +152,7 @@ class ObstacleTracker:
         around = self._poses.predicted_now(now_ns)
         if map_T_frame is None or around is None:
             return None
-        self._costmap = None
+        self._costmap, self._placed = None, msg
         cells, spec = grid_from_message(msg)
         nearby = partial(
             obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m

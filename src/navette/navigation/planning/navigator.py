@@ -74,6 +74,7 @@ class Navigator:
         self._blocked = False
         self._blocked_ns = -_BLOCKED_PERIOD_NS  # of the last plan because of it
         self._set_out = False
+        self._jumped = False
         self._paused_ns: int | None = None
 
     def copy(self) -> "Navigator":
@@ -170,6 +171,10 @@ class Navigator:
         """Note that obstacles stop the controller; the next step plans from there."""
         self._blocked = True
 
+    def note_jump(self) -> None:
+        """Note that the robot's pose was corrected; the next step plans from there."""
+        self._jumped = True
+
     def note_stalled(self, now_ns: int) -> None:
         """Note that something invisible stops the robot; plan around that place."""
         if self._progress is None or now_ns - self._blocked_ns < _BLOCKED_PERIOD_NS:
@@ -247,6 +252,7 @@ class Navigator:
         self._set_out |= progress.covered >= _SET_OUT_M
         changed, self._map_changed = self._map_changed, False
         blocked, self._blocked = self._blocked, False
+        jumped, self._jumped = self._jumped, False
         if self._checker.no_progress(now_ns):
             if self._checker.exhausted:
                 self._avoided.note_stuck(progress.ahead, self._front_m())
@@ -258,9 +264,13 @@ class Navigator:
         elif blocked and now_ns - self._blocked_ns >= _BLOCKED_PERIOD_NS:
             self._blocked_ns = now_ns
             self._replan(robot.pose, self._goal, exact_start=True)
-        elif progress.off_path_m > self.params.deviation_m or (
-            # Before the robot has started, replanning costs nothing.
-            changed and (not self._set_out or not self._still_valid(plan, progress))
+        elif (
+            jumped
+            or progress.off_path_m > self.params.deviation_m
+            or (
+                # Before the robot has started, replanning costs nothing.
+                changed and (not self._set_out or not self._still_valid(plan, progress))
+            )
         ):
             self._replan(robot.pose, self._goal)
         elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:

@@ -239,10 +239,14 @@ class PlannerNode(StageNode):
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; detect arrival at once."""
+        jumps = self._tracker.jumps
         if not self._tracker.update(msg):
             return
         self._odometry_ns = self._now_ns
         self._navigator.planner.put_down_at = self._tracker.first
+        if self._tracker.jumps != jumps:
+            self._when_stepped(lambda: self._navigator.note_jump())
+            self.on_timer()
         robot = self._robot()
         if robot is None or self._stepping is not None:
             return

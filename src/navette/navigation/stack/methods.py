@@ -1,4 +1,4 @@
-"""Choice of the stages' methods, by option or launch argument."""
+"""Choice of the stages' methods and of the localization, by option or argument."""
 
 from collections.abc import Mapping
 
@@ -9,6 +9,7 @@ METHOD_PARAMETERS = {
     "controller": ("control", "method"),
     "costmap": ("costmap", "method"),
     "mapping": ("map_memory", "fusion"),
+    "localization": ("sim", "localization"),
 }
 """What is chosen → node and its parameter."""
 

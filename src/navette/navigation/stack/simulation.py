@@ -9,9 +9,14 @@ from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
 from navette.files.runs import RunInfo
 from navette.msgs.topics import CLOCK
+from navette.navigation.stack.localization import (
+    localization_nodes,
+    localization_parameters,
+)
 from navette.navigation.stack.methods import method_parameters
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.pose_error import PoseErrorNode
 from navette.navigation.stack.programs import MakeNode
 from navette.navigation.stack.reservation import reserve
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
@@ -148,7 +153,10 @@ class Simulation:
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
         # Before the missions, so that it reports the last goal before they end the run.
         self.monitor = MonitorNode(context=context, on_change=on_change)
-        self.stack = NavigationStack.create(context, self._replacements)
+        self.pose_error = PoseErrorNode(self.sim, context=context)
+        self._add_localization()
+        located_by = [name for name, _ in localization_nodes(self.sim.params)]
+        self.stack = NavigationStack.create(context, self._replacements, located_by)
         self.viewer = (
             None
             if options.headless
@@ -161,6 +169,16 @@ class Simulation:
             self.executor.add_node(node)
         if options.ends_with_goals:
             self.stack.missions.on_done = self.stop
+
+    def _add_localization(self) -> None:
+        """Add the parameters of the localization nodes, below all others."""
+        start = self.sim.simulator.pose().to_pose2()
+        derived = ParameterOverrides()
+        found = localization_parameters(self.sim.params, start)
+        for name, values in found.items():
+            derived.add(name, values, f"localization {self.sim.params.localization}")
+        sets = self.context.overrides.sets
+        self.context.overrides.sets = [*derived.sets, *sets]
 
     def _drop_overrides_of_replaced(self) -> None:
         """Drop the robot's parameters for nodes that are replaced."""
@@ -232,6 +250,7 @@ class Simulation:
             wall_time_s=self._stopwatch.elapsed_s,
             real_time_factor=self.real_time_factor(),
             seed=self.options.seed,
+            pose_error_m=self.pose_error.error(),
         )
 
     def close(self) -> None:

@@ -1,6 +1,6 @@
 """The nodes of the stack in data-flow order."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -11,13 +11,12 @@ from navette.navigation.control.node import ControlNode
 from navette.navigation.control.params import ControlParams
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
-from navette.navigation.localization.ekf.node import EkfNode
-from navette.navigation.localization.localizer.node import LocalizerNode
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.navigation.missions.explore.node import ExplorerNode
 from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
+from navette.navigation.stack.localization import FILTER, LOCALIZATIONS
 from navette.navigation.stack.programs import MakeNode, default_context
 from navette.navigation.tracking.node import TrackingNode
 from navette.runtime import Context, Node, StageNode
@@ -40,8 +39,8 @@ FLOW = (
 NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("sim", SimNode),
     ("odom_integrator", OdomIntegratorNode),
-    ("ekf", EkfNode),
-    ("localizer", LocalizerNode),
+    FILTER,
+    *dict.fromkeys(each for nodes in LOCALIZATIONS.values() for each in nodes),
     ("costmap", CostmapNode),
     ("tracking", TrackingNode),
     ("map_memory", MapMemoryNode),
@@ -85,11 +84,10 @@ def node_class(name: str) -> type[StageNode]:
 class NavigationStack:
     """The nodes between sensors and wheels; they communicate on topics only.
 
-    Localization is not included: the simulator publishes the pose on the same topic.
-    Start localization nodes by name where required.
+    The first of the localization nodes publishes the pose as Nav2's localizer does.
     """
 
-    localizer: Node
+    localization: tuple[Node, ...]
     costmap: Node
     tracking: Node
     map_memory: Node
@@ -102,13 +100,17 @@ class NavigationStack:
 
     @classmethod
     def create(
-        cls, context: Context, replacements: Mapping[str, MakeNode] = _NOTHING
+        cls,
+        context: Context,
+        replacements: Mapping[str, MakeNode] = _NOTHING,
+        localization: Sequence[str] = ("localizer",),
     ) -> "NavigationStack":
         """Create all nodes, with the context's parameter overrides.
 
         Args:
             context: context of the nodes.
             replacements: names of :data:`REPLACEABLE` → what makes the node instead.
+            localization: names of the nodes that locate the robot.
 
         Raises:
             UnknownNameError: no such node, or one that cannot be replaced.
@@ -125,7 +127,7 @@ class NavigationStack:
             return kind(context=context)
 
         return cls(
-            localizer=made("localizer"),
+            localization=tuple(map(made, localization)),
             costmap=made("costmap"),
             tracking=made("tracking"),
             map_memory=made("map_memory"),

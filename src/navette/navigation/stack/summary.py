@@ -5,13 +5,15 @@ import math
 from dataclasses import asdict, dataclass
 
 from navette.navigation.missions import GoalOutcome
+from navette.navigation.stack.pose_error import PoseError
 
 
 @dataclass(frozen=True)
 class RunSummary:
     """Summary of a run; ``min_clearance_m`` is from the body to the nearest obstacle.
 
-    Seconds are simulated unless named otherwise.
+    Seconds are simulated unless named otherwise. Goals are judged by the estimated
+    pose; ``pose_error_m`` is its distance from the true one.
     """
 
     goals: tuple[GoalOutcome, ...]
@@ -21,6 +23,7 @@ class RunSummary:
     wall_time_s: float
     real_time_factor: float
     seed: int
+    pose_error_m: PoseError
 
     @property
     def succeeded(self) -> bool:

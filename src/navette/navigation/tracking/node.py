@@ -75,8 +75,11 @@ class TrackingNode(StageNode):
         """Publish what moves at the stamp of the scan."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if self._odometry is not None:
+            jumps = self._poses.jumps
             self._poses.update(self._odometry)
             self._odometry = None
+            if self._poses.jumps != jumps:
+                self._obstacles.reset()  # everything seems to have moved
         if self._used_ns is not None:
             since_ns = stamp_ns - self._used_ns
             # A tenth of the period less: stamps jitter.

@@ -5,7 +5,7 @@ from bisect import bisect_right
 from collections import deque
 
 from navette.errors import InvalidInputError
-from navette.geometry import Pose2, Transform3, advanced, yaw_of
+from navette.geometry import Pose2, Transform3, advanced, angle_difference, yaw_of
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime.input_check import FARTHEST
@@ -18,15 +18,18 @@ _HERE = Pose2(0.0, 0.0, 0.0)
 _LONGEST_PREDICTION_S = 0.25
 # A pose this far from the one before: the robot was carried to another place.
 _CARRIED_M = 1.0
+# A correction of map_T_odom that moves the robot further is a jump.
+_JUMP_M, _JUMP_RAD = 0.15, 0.1
 
 
 class PoseTracker:
     """Pose of the base in the map frame with a short history, updated by odometry.
 
     The odometry's child frame may be another frame of the robot, such as a lidar in
-    front of the axle; static transforms convert its pose to the base's. If the
-    odometry's frame is not the map frame, the newest transform between the two is
-    applied. There is no pose until these transforms are available.
+    front of the axle; static transforms convert its pose to the base's. The history is
+    kept in the odometry's frame. If that is not the map frame, the newest transform
+    between the two is applied to all of it (REP 105: map_T_odom is corrected in steps,
+    odom_T_base is continuous). There is no pose until these transforms are available.
 
     Args:
         node: the node that receives the transforms.
@@ -51,10 +54,15 @@ class PoseTracker:
         self._node = node
         self._topic = topic
         self._history_ns = round(history_s * 1e9)
-        self._history: deque[tuple[int, Pose2]] = deque()
+        self._history: deque[tuple[int, Pose2]] = deque()  # odom_T_base by stamp
+        self._odom_frame = ""
+        self._map_T_odom = _HERE
+        #: Number of jumps of map_T_odom: what was placed in the map before, such as a
+        #: path or obstacles, has to be placed again.
+        self.jumps = 0
         self._velocity = (0.0, 0.0)
         self._side_speed = 0.0
-        self._first: Pose2 | None = None
+        self._first: Pose2 | None = None  # odom_T_base
         # Received only if odometry needs moving transforms.
         self._on_invalid = node.drop_input if isinstance(node, StageNode) else None
         self._listener = TransformListener(
@@ -62,17 +70,17 @@ class PoseTracker:
         )
         self._moving_listener: TransformListener | None = None
         self._child_T_base: tuple[str, Pose2] | None = None
-        self._map_T_odom: tuple[Transform3, Pose2] | None = None
+        self._newest_transform: tuple[Transform3, Pose2] | None = None
 
     @property
     def latest(self) -> Pose2 | None:
         """The newest map_T_base, or None."""
-        return self._history[-1][1] if self._history else None
+        return self._on_map(self._history[-1][1]) if self._history else None
 
     @property
     def first(self) -> Pose2 | None:
         """The map_T_base where the robot was put down, or None."""
-        return self._first
+        return self._first and self._on_map(self._first)
 
     @property
     def stamp_ns(self) -> int | None:
@@ -97,13 +105,16 @@ class PoseTracker:
             return False
         position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
         odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
-        map_T_base = odom_T_child @ child_T_base
-        if map_T_odom is not _HERE:
-            map_T_base = map_T_odom @ map_T_base
-        if not _is_near(map_T_base):
-            self._drop_pose(map_T_base)
+        odom_T_base = odom_T_child @ child_T_base
+        on_map = odom_T_base if map_T_odom is _HERE else map_T_odom @ odom_T_base
+        if not _is_near(on_map):
+            self._drop_pose(on_map)
             return False
-        self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
+        if odometry.header.frame_id != self._odom_frame:
+            self._odom_frame = odometry.header.frame_id
+            self._history.clear()
+        stamp_ns = stamp_to_ns(odometry.header.stamp)
+        self._store(stamp_ns, odom_T_base, on_map, map_T_odom)
         twist = odometry.twist.twist
         self._velocity, self._side_speed = _velocity_of_base(
             twist.linear.x, twist.linear.y, twist.angular.z, child_T_base
@@ -118,11 +129,16 @@ class PoseTracker:
         index = bisect_right(history, stamp_ns, key=lambda entry: entry[0])
         before_ns, before = history[index - 1]
         if before_ns == stamp_ns:
-            return before
+            return self._on_map(before)
         after_ns, after = history[index]
-        return before.interpolate(
-            after, (stamp_ns - before_ns) / (after_ns - before_ns)
-        )
+        share = (stamp_ns - before_ns) / (after_ns - before_ns)
+        return self._on_map(before.interpolate(after, share))
+
+    def in_odom(self, map_T_base: Pose2) -> Pose2:
+        """Return odom_T_base of a pose: continuous, for lengths of motions."""
+        if self._map_T_odom is _HERE:
+            return map_T_base
+        return self._map_T_odom.inverse() @ map_T_base
 
     def predicted_at(self, stamp_ns: int) -> Pose2 | None:
         """Return map_T_base at a stamp, interpolated or predicted.
@@ -179,16 +195,35 @@ class PoseTracker:
         self._velocity = (0.0, 0.0)
         self._side_speed = 0.0
 
-    def _store(self, stamp_ns: int, map_T_base: Pose2) -> None:
+    def _on_map(self, odom_T_base: Pose2) -> Pose2:
+        """Return map_T_base; the same numbers if both frames are one."""
+        if self._map_T_odom is _HERE:
+            return odom_T_base
+        return self._map_T_odom @ odom_T_base
+
+    def _store(
+        self, stamp_ns: int, odom_T_base: Pose2, on_map: Pose2, map_T_odom: Pose2
+    ) -> None:
         history = self._history
         if history and stamp_ns <= history[-1][0]:
             if stamp_ns == history[-1][0]:
                 history.pop()
             else:
                 history.clear()  # time jumped backward
-        if not history or history[-1][1].distance_to(map_T_base) > _CARRIED_M:
-            self._first = map_T_base
-        history.append((stamp_ns, map_T_base))
+        before = self._on_map(odom_T_base)  # by the transform until now
+        was_carried = (
+            not history or history[-1][1].distance_to(odom_T_base) > _CARRIED_M
+        )
+        if map_T_odom is not self._map_T_odom:
+            self._map_T_odom = map_T_odom
+            if history:
+                moved = before.distance_to(on_map)
+                turned = abs(angle_difference(before.yaw, on_map.yaw))
+                self.jumps += moved > _JUMP_M or turned > _JUMP_RAD
+                was_carried |= moved > _CARRIED_M
+        if was_carried:
+            self._first = odom_T_base
+        history.append((stamp_ns, odom_T_base))
         while history[0][0] < stamp_ns - self._history_ns:
             history.popleft()
 
@@ -214,9 +249,10 @@ class PoseTracker:
                 )
             self._drop("unknown_frame", str(error))
             return None
-        if self._map_T_odom is None or self._map_T_odom[0] is not transform:
-            self._map_T_odom = transform, transform.to_pose2()
-        return self._map_T_odom[1]
+        known = self._newest_transform
+        if known is None or known[0] is not transform:
+            self._newest_transform = known = transform, transform.to_pose2()
+        return known[1]
 
     def _static(self, target: str, source: str) -> Transform3 | None:
         if target == source:

@@ -2,12 +2,13 @@ import json
 import math
 
 from navette.navigation.missions import GoalOutcome
+from navette.navigation.stack.pose_error import PoseError
 from navette.navigation.stack.summary import RunSummary
 
 
 def summary(*results: str, contacts: int = 0) -> RunSummary:
     goals = tuple(GoalOutcome((1.0, 2.0), r, 3.0, 4.0, 0.05) for r in results)
-    return RunSummary(goals, contacts, math.inf, 3.0, 0.1, 30.0, 7)
+    return RunSummary(goals, contacts, math.inf, 3.0, 0.1, 30.0, 7, PoseError(0.2, 0.1))
 
 
 def test_success_means_all_goals_reached_without_contact() -> None:
@@ -26,7 +27,9 @@ def test_json_has_the_documented_keys_and_only_finite_numbers() -> None:
         "wall_time_s",
         "real_time_factor",
         "seed",
+        "pose_error_m",
     }
+    assert read["pose_error_m"] == {"worst": 0.2, "final": 0.1}
     assert read["min_clearance_m"] is None
     assert read["goals"][0] == {
         "goal": [1.0, 2.0],
