@@ -84,7 +84,7 @@ DIMENSIONLESS = (
     r"mppi_(\w+_weight|temperature|samples|steps)",
     r"(progress|goal)_reward|(time|contact)_penalty",
     r"(clearance|map_cost)_weight|unknown_cost|(reverse|evasion)_factor|stale_periods",
-    r"(switch|frontier)_gain",
+    r"(switch|frontier)_gain|wheel_scale_error",
 )
 
 

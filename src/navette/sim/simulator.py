@@ -319,6 +319,6 @@ def _wheel_errors(params: SimParams) -> WheelErrors:
     return WheelErrors(
         params.wheel_stddev_m,
         params.wheel_scale_error,
-        params.wheel_slips_per_m,
+        params.wheel_slip_interval_m,
         params.wheel_slip_m,
     )

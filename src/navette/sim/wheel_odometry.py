@@ -63,14 +63,14 @@ class WheelErrors:
     Attributes:
         noise: standard deviation (m) after 1 m; the variance grows with the distance.
         scale: standard deviation of a constant relative error, drawn once per run.
-        slips_per_m: mean number of sudden slips per metre.
-        slip_m: standard deviation of the false travel of a slip (m).
+        slip_interval: mean distance (m) between sudden slips; 0 = none.
+        slip: standard deviation of the false travel of a slip (m).
     """
 
     noise: float = 0.0
     scale: float = 0.0
-    slips_per_m: float = 0.0
-    slip_m: float = 0.0
+    slip_interval: float = 0.0
+    slip: float = 0.0
 
 
 class WheelOdometry:
@@ -193,9 +193,9 @@ class WheelOdometry:
 
     def _measured(self, travel: float, rng: np.random.Generator) -> float:
         errors = self._errors
-        if errors.slips_per_m > 0.0:
-            slips = int(rng.poisson(errors.slips_per_m * abs(travel)))
-            travel += errors.slip_m * math.sqrt(slips) * float(rng.normal())
+        if errors.slip_interval > 0.0:
+            slips = int(rng.poisson(abs(travel) / errors.slip_interval))
+            travel += errors.slip * math.sqrt(slips) * float(rng.normal())
         if self._noise == 0:
             return travel
         return travel + self._noise * math.sqrt(abs(travel)) * float(rng.normal())
