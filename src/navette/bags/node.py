@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 from navette.bags.bag import BagTopic
 from navette.bags.params import RecorderParams
-from navette.bags.qos import OfferedQos
+from navette.bags.qos_profiles import offer_of
 from navette.bags.recording import (
     RecordedTopic,
     Recording,
@@ -28,7 +28,6 @@ from navette.errors import FileFormatError, UnknownNameError
 from navette.msgs import definition_text, get_interface, type_hash
 from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.params import Params
-from navette.runtime import Endpoint
 from navette.runtime.context import Context
 from navette.runtime.parameter import Parameter
 from navette.runtime.qos import (
@@ -193,7 +192,7 @@ class RecorderNode(StageNode):
         endpoints = self.context.graph.endpoints(recorded.topic.name)
         # Ids of endpoints of other processes are random.
         endpoints.sort(key=lambda endpoint: endpoint.node_full_name)
-        offers = tuple(_offer(e) for e in endpoints if e.kind.name == "PUBLISHER")
+        offers = tuple(offer_of(e.qos) for e in endpoints if e.kind.name == "PUBLISHER")
         recorded.topic = replace(recorded.topic, qos=offers)
 
     # -- messages --------------------------------------------------------------
@@ -307,20 +306,6 @@ def _open(path: Path, params: RecorderParams, *, overwrite: bool) -> Recording:
             max_duration_ns=round(params.max_bag_duration_s * 1e9),
         )
     return SingleFile(path, compression=params.compression, overwrite=overwrite)
-
-
-def _offer(endpoint: Endpoint) -> OfferedQos:
-    qos = endpoint.qos
-    return OfferedQos(
-        history=qos.history.short_key,
-        depth=qos.depth,
-        reliability=qos.reliability.short_key,
-        durability=qos.durability.short_key,
-        deadline_ns=qos.deadline_ns,
-        lifespan_ns=qos.lifespan_ns,
-        liveliness=qos.liveliness.short_key,
-        lease_ns=qos.lease_ns,
-    )
 
 
 def _nothing() -> None:

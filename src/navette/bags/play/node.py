@@ -23,7 +23,7 @@ from navette.bags.play.options import PlayOptions
 from navette.bags.play.player import LAST_PLAYED_NS, Player, PlayState
 from navette.bags.play.services import SERVICES
 from navette.bags.play.source import Source
-from navette.bags.qos import OfferedQos
+from navette.bags.qos_profiles import profile_of
 from navette.errors import NavetteError
 from navette.files.untrusted.escaping import escaped
 from navette.msgs.rosgraph_msgs.msg import Clock as ClockMsg
@@ -32,12 +32,9 @@ from navette.runtime.events import Call
 from navette.runtime.node import Node
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
     QoSProfile,
-    ReliabilityPolicy,
 )
-from navette.runtime.time import Duration, ns_to_stamp
+from navette.runtime.time import ns_to_stamp
 
 CLOCK_TOPIC = "/clock"
 _CLOCK_QOS = QoSProfile(depth=1)
@@ -300,7 +297,7 @@ class PlayerNode(Node):
             name = _valid_name(topic.name)
             if name.lstrip("/") != topic.name.lstrip("/"):
                 self.get_logger().warning(f"{escaped(topic.name)} is played as {name}")
-            profile = _profile(joint_offer(topic))
+            profile = profile_of(joint_offer(topic))
             return self.create_publisher(message_class(topic), name, profile)
         except NavetteError as error:
             self.get_logger().warning(f"{escaped(topic.name)} is not played: {error}")
@@ -323,13 +320,3 @@ def _valid_name(name: str) -> str:
     """Convert a ROS 1 name, which may have more characters and no slash."""
     parts = (re.sub(r"[^A-Za-z0-9_]", "_", part) for part in name.split("/") if part)
     return "".join(f"/_{p}" if p[0].isdigit() else f"/{p}" for p in parts)
-
-
-def _profile(offer: OfferedQos) -> QoSProfile:
-    return QoSProfile(
-        history=HistoryPolicy.get_from_short_key(offer.history),
-        depth=offer.depth,
-        reliability=ReliabilityPolicy.get_from_short_key(offer.reliability),
-        durability=DurabilityPolicy.get_from_short_key(offer.durability),
-        deadline=Duration(nanoseconds=offer.deadline_ns),
-    )

@@ -14,9 +14,7 @@ _ROS_2 = {
     "ament_pep257": "leave the linters' tests out",
     "launch_testing": "start programs with launch.LaunchService or subprocess in a "
     "pytest test",
-    "nav2_simple_commander": "navette.navigation.missions drives to goals",
     "ros2cli": "navette's commands do the same: navette --help",
-    "rosbag2_py": "navette.bags reads and writes recordings",
     "turtlesim": "examples/17_draw_a_square.py drives a robot like the turtle",
 }
 

@@ -88,8 +88,7 @@ def test_a_traceback_starts_in_the_program(
     ("line", "expected"),
     [
         ("import rospy", "docs/reference/idioms.md"),
-        ("from rosbag2_py import SequentialReader", "navette.bags"),
-        ("import rosbag2_py.reader", "navette.bags"),
+        ("import launch_testing", "LaunchService"),
         ("from fleet_msgs.msg import Truck", "NAVETTE_INTERFACE_PATH"),
     ],
 )
