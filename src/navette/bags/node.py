@@ -192,7 +192,11 @@ class RecorderNode(StageNode):
         endpoints = self.context.graph.endpoints(recorded.topic.name)
         # Ids of endpoints of other processes are random.
         endpoints.sort(key=lambda endpoint: endpoint.node_full_name)
-        offers = tuple(offer_of(e.qos) for e in endpoints if e.kind.name == "PUBLISHER")
+        offers = tuple(
+            offer_of(QoSProfile.from_endpoint_qos(e.qos))
+            for e in endpoints
+            if e.kind.name == "PUBLISHER"
+        )
         recorded.topic = replace(recorded.topic, qos=offers)
 
     # -- messages --------------------------------------------------------------

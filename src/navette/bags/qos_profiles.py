@@ -1,18 +1,19 @@
-"""QoS as bags store it, and as publishers have it."""
+"""QoS as bags store it, and as nodes use it."""
 
 from navette.bags.qos import OfferedQos
-from navette.runtime.qos import (
+from navette.runtime import (
     DurabilityPolicy,
+    Duration,
     HistoryPolicy,
     LivelinessPolicy,
     QoSProfile,
     ReliabilityPolicy,
 )
-from navette.transports import EndpointQos
 
 
-def offer_of(qos: EndpointQos) -> OfferedQos:
-    """Return the QoS of a publisher as bags store it."""
+def offer_of(profile: QoSProfile) -> OfferedQos:
+    """Return the profile of a publisher as bags store it."""
+    qos = profile.to_endpoint_qos()
     return OfferedQos(
         history=qos.history.short_key,
         depth=qos.depth,
@@ -27,15 +28,13 @@ def offer_of(qos: EndpointQos) -> OfferedQos:
 
 def profile_of(offer: OfferedQos) -> QoSProfile:
     """Return the profile of a publisher that offers the same."""
-    return QoSProfile.from_endpoint_qos(
-        EndpointQos(
-            history=HistoryPolicy[offer.history.upper()],
-            depth=offer.depth,
-            reliability=ReliabilityPolicy[offer.reliability.upper()],
-            durability=DurabilityPolicy[offer.durability.upper()],
-            deadline_ns=offer.deadline_ns,
-            lifespan_ns=offer.lifespan_ns,
-            liveliness=LivelinessPolicy[offer.liveliness.upper()],
-            lease_ns=offer.lease_ns,
-        )
+    return QoSProfile(
+        history=HistoryPolicy[offer.history.upper()],
+        depth=offer.depth,
+        reliability=ReliabilityPolicy[offer.reliability.upper()],
+        durability=DurabilityPolicy[offer.durability.upper()],
+        deadline=Duration(nanoseconds=offer.deadline_ns),
+        lifespan=Duration(nanoseconds=offer.lifespan_ns),
+        liveliness=LivelinessPolicy[offer.liveliness.upper()],
+        liveliness_lease_duration=Duration(nanoseconds=offer.lease_ns),
     )

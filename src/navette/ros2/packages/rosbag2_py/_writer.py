@@ -65,7 +65,7 @@ class SequentialWriter:
         """
         self._opened()
         profiles = topic.offered_qos_profiles
-        qos = tuple(offer_of(profile.to_endpoint_qos()) for profile in profiles)
+        qos = tuple(offer_of(profile) for profile in profiles)
         described = BagTopic(
             topic.name, topic.type, type_hash=topic.type_description_hash, qos=qos
         )
