@@ -12,9 +12,9 @@ import numpy as np
 from harness import Benchmark
 
 from navette.geometry import Footprint
+from navette.navigation.control.local_field import local_field
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.predictive_follower import local_field
 from navette.navigation.control.rollouts import PathWindow
 from navette.navigation.grids import body_points
 

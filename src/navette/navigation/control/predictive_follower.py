@@ -20,6 +20,7 @@ from navette.navigation.control.limits import (
     brake,
     clamp,
 )
+from navette.navigation.control.local_field import local_field, open_field
 from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
@@ -30,7 +31,6 @@ from navette.navigation.control.records import (
 )
 from navette.navigation.control.rollouts import (
     METRES_PER_RADIAN,
-    LocalField,
     PathWindow,
 )
 from navette.navigation.control.rotate import TurnInPlace
@@ -39,11 +39,9 @@ from navette.navigation.grids import (
     NO_DISCS,
     NONE_UNSEEN,
     body_points,
-    distance_field,
 )
 
-_CELL_M, _FINE_CELL_M = 0.05, 0.02  # of the distance field
-_NEAR_M = 0.12  # clearance below which it has the finer cells
+_CELL_M = 0.05  # of the distance field
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
@@ -86,7 +84,7 @@ class PredictiveFollower:
         self._calm = _Mode.of(params, self._body, swerves=False)
         self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
-        self._field = _open_field()
+        self._field = open_field()
         self._speed_limits = NO_CAP
         self._discs = NO_DISCS
         self.reset()
@@ -165,10 +163,8 @@ class PredictiveFollower:
     ) -> None:
         """Store the values of :class:`navette.navigation.grids.Obstacles`."""
         self._collision.set_obstacles(points, half_cell, unseen)
-        # Finer cells take longer: only near obstacles.
-        cell = _FINE_CELL_M if self._clearance < _NEAR_M else _CELL_M
         self._field = local_field(
-            points, max(cell, 2 * half_cell), self._params.mppi_clearance_m + 1.0
+            points, _CELL_M, self._params.mppi_clearance_m + 1.0, half_cell
         )
 
     def set_moving(self, discs: NDArray[np.float64]) -> None:
@@ -368,30 +364,6 @@ def evasive(params: ControlParams) -> ControlParams:
         turn_acceleration_radps2=factor * params.turn_acceleration_radps2,
         lateral_acceleration_mps2=factor * params.lateral_acceleration_mps2,
     )
-
-
-def local_field(
-    points: NDArray[np.float64], resolution: float, far_m: float
-) -> LocalField:
-    """Return the distance field of obstacle points (N, 2) of a grid, map frame."""
-    if not len(points):
-        return _open_field()
-    low = points.min(axis=0) - far_m
-    high = points.max(axis=0) + far_m
-    width, height = np.ceil((high - low) / resolution).astype(int) + 1
-    lethal = np.zeros((height, width), np.uint8)
-    column, row = np.floor((points - low) / resolution).astype(np.int64).T
-    lethal[row, column] = 1
-    return LocalField(
-        distance_field(lethal, resolution, far_m),
-        float(low[0]),
-        float(low[1]),
-        float(resolution),
-    )
-
-
-def _open_field() -> LocalField:
-    return LocalField(np.full((1, 1), 1e3, np.float32), 0.0, 0.0, 1.0)
 
 
 def _window(poses: NDArray[np.float64]) -> PathWindow:

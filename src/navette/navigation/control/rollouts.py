@@ -36,6 +36,10 @@ METRES_PER_RADIAN = 0.5
 COLLISION = 200.0
 # Cost of the path left on average, relative to that left at the end.
 DELAY_SHARE = 0.5
+# Share of the clearance cost that counts where the path has as little clearance.
+SHARE_ON_PATH = 0.25
+# Clearance of the path below which that of the samples is interpolated.
+TIGHT_M = 0.12
 # Samples that advance together: their arrays stay in the first-level cache.
 CHUNK = 256
 # Poses of the path that a sample may advance in one step.
@@ -107,15 +111,17 @@ class LocalField(NamedTuple):
     """Distance to the obstacles around the robot.
 
     Attributes:
-        distance_m: (H, W) float32 between cell centres; the border is far from all.
+        distance_m: (H, W) float32 at cell centres; the border is far from all.
         x, y: corner of cell (0, 0) in the map; the grid is not rotated.
         resolution: edge of a cell, m.
+        half_cell_m: half the edge of the obstacles' cells: they may fill them.
     """
 
     distance_m: Array32
     x: float
     y: float
     resolution: float
+    half_cell_m: float
 
 
 class RolloutBody(NamedTuple):
@@ -161,10 +167,29 @@ def rollout_costs(
         costs: (K,), written.
     """
     count = costs.shape[0]
+    on_path = _lack_on_path(path, field, body, weights.clearance_m)
     for first in range(0, count, CHUNK):
         last = min(count, first + CHUNK)
-        _chunk_costs(commands, first, start, step_s, drive, limits, path, field,
-                     body, weights, costs[first:last])  # fmt: skip
+        _chunk_costs(commands, first, start, step_s, drive, limits, path, on_path,
+                     field, body, weights, costs[first:last])  # fmt: skip
+
+
+@kernel(nogil=True, fastmath=True)
+def _lack_on_path(
+    path: PathTable, field: LocalField, body: RolloutBody, enough_m: float
+) -> Array32:
+    """Return (N,) the squared lack of clearance (m²) at each pose of the path."""
+    count = path.poses.shape[1]
+    near = np.empty((5, count), np.float32)
+    index = np.empty(count, np.int32)
+    lack = np.zeros(count, np.float32)
+    found = _near_obstacles(path.poses, field, body, enough_m, near, index)
+    if found > 0:
+        _clearances(field, body, enough_m, near, found, True)
+        for i in range(found):
+            less = np.float32(enough_m) - near[4, i]
+            lack[np.uint32(index[i])] = less * less
+    return lack
 
 
 @kernel(nogil=True, fastmath=True)
@@ -176,6 +201,7 @@ def _chunk_costs(
     drive: int,
     limits: DriveLimits,
     path: PathTable,
+    on_path: Array32,
     field: LocalField,
     body: RolloutBody,
     weights: CostWeights,
@@ -193,7 +219,8 @@ def _chunk_costs(
     before, apart = np.empty(n, np.float32), np.empty(n, np.float32)
     at, from_ = np.zeros(n, np.int32), np.empty(n, np.int32)
     near = np.empty((5, n), np.float32)
-    index, cells = np.empty(n, np.int32), np.empty(n, np.int32)
+    index = np.empty(n, np.int32)
+    is_tight = on_path.max() > (weights.clearance_m - np.float32(TIGHT_M)) ** 2
     costs[:] = 0.0
     for t in range(steps):
         before[:] = speed[steering]
@@ -207,12 +234,13 @@ def _chunk_costs(
             advance_omni(limits, step_s, speeds, turns, rates, speed)
         _effort_costs(before, speed[steering], weights.effort, costs)
         move(pose, speed, step_s)
+        _nearest(path, pose, from_, at, apart)
         found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
         if found > 0:
-            _clearances(field, body, weights.clearance_m, near, cells, found)
+            _clearances(field, body, weights.clearance_m, near, found, is_tight)
             earlier: Any = np.float32((1.0 - 0.5 * t / steps) / steps)
-            _clearance_costs(near[4], found, index, weights, step_s, earlier, costs)
-        _nearest(path, pose, from_, at, apart)
+            _clearance_costs(near[4], found, index, on_path, at, weights, step_s,
+                             earlier, costs)  # fmt: skip
         _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
         _delay_costs(path, at, weights.progress, steps, costs)
     _remaining_costs(pose, path, at, weights.progress, costs)
@@ -288,17 +316,50 @@ def _clearances(
     body: RolloutBody,
     enough_m: float,
     near: Array32,
-    cells: Indices,
     count: int,
+    exact: bool,
 ) -> None:
-    """Write the clearance of the bodies to row 4 of ``near``; at most enough."""
+    """Write the clearance of the bodies to row 4 of ``near``; at most enough.
+
+    ``exact``: bilinear between cell centres, at twice the time; otherwise that of the
+    cell, less half a cell.
+    """
     for i in range(count):
         near[4, i] = enough_m
-    flat = field.distance_m.reshape(-1)
-    half_cell = np.float32(0.5 * field.resolution)
+    grid = field.distance_m
+    flat, cells = grid.reshape(-1), np.empty(count, np.int32)
+    half_cell = field.half_cell_m
+    if not exact:
+        half_cell = max(half_cell, 0.5 * field.resolution)
     for k in range(body.points.shape[0]):
-        _cells_of_point(field.distance_m.shape, body.points[k], near, cells[:count])
-        _lower(flat, cells[:count], body.points[k, 2] + half_cell, near[4])
+        point = body.points[k]
+        less: Any = np.float32(point[2] + half_cell)
+        if exact:
+            _lower_between(grid, point, less, near[:, :count])
+        else:
+            _cells_of_point(grid.shape, point, near, cells)
+            _lower(flat, cells, less, near[4])
+
+
+@kernel(nogil=True, fastmath=True)
+def _lower_between(field: Array32, point: Array32, less: float, near: Array32) -> None:
+    """Lower the clearances to that of a body point, between four cell centres."""
+    F, I = np.float32, np.int32
+    flat, stride = field.reshape(-1), I(field.shape[1])
+    right, top = F(field.shape[1] - 1.001), F(field.shape[0] - 1.001)
+    bx, by = point[0], point[1]
+    u, v, cos, sin, least = near[0], near[1], near[2], near[3], near[4]
+    for i in range(least.size):
+        pu = min(right, max(F(0.0), u[i] + cos[i] * bx - sin[i] * by - F(0.5)))
+        pv = min(top, max(F(0.0), v[i] + sin[i] * bx + cos[i] * by - F(0.5)))
+        column, row = I(pu), I(pv)
+        fu, fv = pu - F(column), pv - F(row)
+        low = np.uint32(row * stride + column)
+        high = low + np.uint32(stride)
+        a, b = flat[low], flat[low + np.uint32(1)]
+        c, d = flat[high], flat[high + np.uint32(1)]
+        below, above = a + (b - a) * fu, c + (d - c) * fu
+        least[i] = min(least[i], below + (above - below) * fv - less)
 
 
 @kernel(nogil=True, fastmath=True)
@@ -320,6 +381,7 @@ def _cells_of_point(
 
 @kernel(nogil=True, fastmath=True)
 def _lower(flat: Array32, cells: Indices, less: float, least: Array32) -> None:
+    """Lower the clearances to that of a body point, in the cells."""
     for i in range(cells.size):
         there = flat[np.uint32(cells[i])] - less
         least[i] = min(least[i], there)
@@ -330,20 +392,31 @@ def _clearance_costs(
     clearance: Array32,
     count: int,
     index: Indices,
+    on_path: Array32,
+    at: Indices,
     weights: CostWeights,
     step_s: float,
     earlier: float,
     costs: Array32,
 ) -> None:
+    """Add the costs of collisions, and of little clearance.
+
+    Where the path itself has little, only a share of that counts: at its full cost the
+    robot would wait before a narrow passage.
+    """
     F = np.float32
     enough, margin = weights.clearance_m, weights.margin_m
     per_lack = weights.clearance * step_s / (enough * enough)
     collision = F(COLLISION) * earlier
     for i in range(count):
+        sample = np.uint32(index[i])
         lack = enough - clearance[i]
+        square = lack * lack
+        less = square - on_path[np.uint32(at[sample])]
+        counted = max(less, F(SHARE_ON_PATH) * square)
         depth = F(1.0) + min(F(1.0), (margin - clearance[i]) * F(10.0))
         collides = collision * depth if clearance[i] < margin else F(0.0)
-        costs[np.uint32(index[i])] += per_lack * lack * lack + collides
+        costs[sample] += per_lack * counted + collides
 
 
 @kernel(nogil=True, fastmath=True)

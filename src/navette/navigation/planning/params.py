@@ -93,8 +93,9 @@ class PlannerParams(BendParams):
         1.5, "cost of a metre in reverse, in metres forward", at_least=1.0
     )
     max_expansions: int = param(
-        40_000,
-        "largest number of poses that the search with headings expands",
+        160_000,
+        "largest number of poses that the search with headings expands, where a body "
+        "that turns in place fits through",
         at_least=100,
         at_most=1_000_000,
     )

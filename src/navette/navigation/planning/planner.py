@@ -228,13 +228,8 @@ class Planner:
 
     @property
     def _quick(self) -> int:
-        """Budget of a search before the proof that there is no path.
-
-        The proof is about bodies that turn in place: a drive that does not needs
-        longer searches.
-        """
-        most = self.params.max_expansions
-        return most // _QUICK_SHARE if self.params.turns_in_place else most
+        """Budget of a search before the proof that there is no path."""
+        return self.params.max_expansions // _QUICK_SHARE
 
     @property
     def _tight_m(self) -> float:
@@ -259,16 +254,15 @@ class Planner:
         slack = closer.spec.resolution
         margin = self._margin_from(start)
         body = BodyShape.of(self.footprint, slack)
-        quick = self._quick
         found = self._on_close_map(closer, body.through_gaps(slack))._plan_with(
-            margin, start, goal, max_expansions=quick
+            margin, start, goal, max_expansions=self._quick
         )
         if found.outcome.has_path:
             return found
         # Only what an exact pose on every cell confirms is worth the long search.
         if self._why_impossible(closer, start, goal, 0.0) is None:
             found = self._on_close_map(closer, body.loose(slack))._plan_with(
-                margin, start, goal, max_expansions=quick
+                margin, start, goal, max_expansions=self.params.max_expansions
             )
         if found.outcome is not Outcome.SEARCH_LIMIT:
             return found

@@ -7,18 +7,17 @@ import pytest
 from control_plant import Plant, big_robot, run, tangent_path
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.navigation.control.limits import STOP, SpeedCap
-from navette.navigation.control.predictive_follower import (
-    PredictiveFollower,
-    local_field,
-)
+from navette.navigation.control.predictive_follower import PredictiveFollower
 
 PATHS = {
     "straight": np.array([[0, 0], [10, 0.0]]),
     "corner_45": np.array([[0, 0], [5, 0], [10, 5.0]]),
     "zigzag": np.array([[0, 0], [2, 0], [4, 0.7], [6, 0], [8, 0.7], [10, 0.0]]),
 }
+
+BIG = big_robot(method="mppi")
 
 
 def follower(**values: object) -> PredictiveFollower:
@@ -116,12 +115,19 @@ def test_an_invalid_path_is_refused_and_the_old_one_dropped(path: np.ndarray) ->
     assert not robot.has_path
 
 
-def test_the_local_field_measures_from_cell_centres() -> None:
-    field = local_field(np.array([[1.0, 2.0]]), 0.1, 1.0)
-    row, column = np.unravel_index(field.distance_m.argmin(), field.distance_m.shape)
-    assert field.x + column * 0.1 <= 1.0 <= field.x + (column + 1) * 0.1
-    assert field.y + row * 0.1 <= 2.0 <= field.y + (row + 1) * 0.1
-    assert field.distance_m[row, column + 5] == pytest.approx(0.5)
+def test_a_narrow_passage_is_driven_through() -> None:
+    """Walls 4 m long leave 8 cm beside the body: no reason to wait before them."""
+    path = tangent_path(np.array([[0, 0], [12, 0.0]]))
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    half_width = max(y for _, y in Footprint.from_flat(BIG.footprint_m).vertices)
+    x = np.arange(4, 8, 0.05)
+    side = np.full(len(x), half_width + 0.08)
+    walls = [np.column_stack([x, side]), np.column_stack([x, -side])]
+    robot.set_obstacles(np.concatenate(walls), 0.0)
+    robot.set_path(path)
+    result = run(robot, plant, 45.0)
+    assert result.final.state == "reached"
+    assert min(o.clearance_m for o in result.outputs) > 0.01
 
 
 def test_a_path_that_is_published_again_is_followed_from_the_robot() -> None:

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from navette.geometry import DRIVES, Footprint, Pose2, advanced
+from navette.navigation.control.local_field import local_field
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.predictive_follower import local_field
 from navette.navigation.control.rollouts import PathWindow
 from navette.navigation.grids import body_points
 
