@@ -1,8 +1,8 @@
 """The costmap node: scan in, costmap out.
 
-Before the first scan the node publishes nothing, then one costmap for each scan, in the
-scan's frame and with its stamp. An invalid scan is dropped, so that the costmap
-becomes stale downstream.
+Before the first scan the node publishes nothing, then one costmap for each scan, at
+most ``rate_hz`` a second, in the scan's frame and with its stamp. An invalid scan is
+dropped, so that the costmap becomes stale downstream.
 """
 
 from typing import Any, ClassVar
@@ -15,6 +15,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
+from navette.navigation.costmap.scan_selection import ScanSelection
 from navette.navigation.grids import (
     FREE,
     PlanarScan,
@@ -65,6 +66,7 @@ class CostmapNode(StageNode):
         super().__init__(node_name, **kwargs)
         self._costmap = make_costmap(self.params)
         self._costmap.warm_up()
+        self._selection = ScanSelection(self.params.rate_hz)
         self._fault = ""  # newest of the user's method
         self._newest: OccupancyGrid | None = None
         source = CostmapSource(
@@ -77,7 +79,7 @@ class CostmapNode(StageNode):
         self._services = CostmapServices(self, "local_costmap", source)
 
     def on_scan(self, msg: LaserScan) -> None:
-        """Publish the scan's costmap."""
+        """Publish the scan's costmap, if its turn has come."""
         scan = PlanarScan(
             np.asarray(msg.ranges),
             msg.angle_min,
@@ -85,12 +87,14 @@ class CostmapNode(StageNode):
             msg.range_min,
             msg.range_max,
         )
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if not self._selection.takes(stamp_ns):
+            return
         try:
             cells = self._costmap.build(scan)
         except MethodFaultError as error:
             self._report_fault(str(error))
             return
-        stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id
         hits = self._costmap.hits(scan)
         if hits is not None:
@@ -126,3 +130,5 @@ class CostmapNode(StageNode):
     def on_params_changed(self, old: CostmapParams) -> None:
         """Use the new values from the next scan on."""
         self._costmap = make_costmap(self.params)
+        if self.params.rate_hz != old.rate_hz:
+            self._selection = ScanSelection(self.params.rate_hz)

@@ -16,6 +16,12 @@ class CostmapParams(Params):
         "traces the beams, marks and inflates the hits; or a method of your own",
         choices=COSTMAPS,
     )
+    rate_hz: float = param(
+        20.0,
+        "largest rate of costmaps: of a faster sensor, the last scan of each period is "
+        "used; 0: every scan",
+        at_least=0.0,
+    )
     resolution_m: float = param(0.1, "edge of a cell", above=0.0, at_most=1.0)
     size_m: float = param(
         30.0,

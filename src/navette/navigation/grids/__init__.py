@@ -59,6 +59,7 @@ from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_
 from navette.navigation.grids.sub_cells import (
     cell_points,
     mark_points,
+    marked_points,
     point_radius,
     points_by_cell,
     points_of,
@@ -69,8 +70,11 @@ from navette.navigation.grids.unseen import (
     unseen_mask,
     unseen_points,
 )
+from navette.navigation.grids.windows import NO_CELLS, CellWindow
 
 __all__ = [
+    "CellWindow",
+    "NO_CELLS",
     "SquareRegion",
     "NO_DISCS",
     "MovingDiscs",
@@ -126,6 +130,7 @@ __all__ = [
     "points_to_message",
     "points_from_message",
     "mark_points",
+    "marked_points",
     "cell_points",
     "points_of",
     "points_by_cell",

@@ -8,6 +8,7 @@ from navette.files.kernels import kernel
 from navette.navigation.grids.alignment import Affine, align, cell_at
 from navette.navigation.grids.checks import at_least, grid_array
 from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
+from navette.navigation.grids.windows import CellWindow
 
 _ANY = -128  # least int8: every cell counts, unknown ones too
 
@@ -17,15 +18,6 @@ class Changes(NamedTuple):
 
     appeared: int
     vanished: int
-
-
-class _Window(NamedTuple):
-    """Rows and columns of a part of a grid; the last ones are exclusive."""
-
-    first_row: int
-    last_row: int
-    first_column: int
-    last_column: int
 
 
 def compare(
@@ -76,10 +68,10 @@ def compare(
     return Changes(appeared, vanished)
 
 
-def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> _Window:
+def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> CellWindow:
     row, column = spec.cell_of(*center)
     reach = int(radius_m / spec.resolution)
-    return _Window(
+    return CellWindow(
         min(max(row - reach, 0), spec.height),
         min(max(row + reach + 1, 0), spec.height),
         min(max(column - reach, 0), spec.width),
@@ -89,7 +81,7 @@ def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> _Wi
 
 @kernel
 def _unmatched(
-    grid: Cells, window: _Window, other: Cells, other_T_grid: Affine, least: np.int8
+    grid: Cells, window: CellWindow, other: Cells, other_T_grid: Affine, least: np.int8
 ) -> int:
     """Count lethal cells of ``grid`` without a lethal cell of ``other`` near them.
 

@@ -6,10 +6,14 @@ of a sub-cell; one without a mask (a loaded map, a costmap without points) is it
 centre with half a cell around it.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids.spec import GridSpec
+from navette.files.kernels import kernel
+from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
+from navette.navigation.grids.windows import CellWindow
 
 SUB_CELLS = 8
 """Sub-cells along an edge of a cell; 64 bits in all."""
@@ -32,15 +36,8 @@ def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int6
         points: (N, 2) in the grid's frame, m; those outside are ignored.
     """
     uv = spec.origin.inverse().apply(points) / spec.resolution
-    inside = ((uv >= 0) & (uv < (spec.width, spec.height))).all(axis=1)
-    uv = uv[inside]
-    column, row = uv.astype(np.int64).T
-    part = ((uv % 1.0) * SUB_CELLS).astype(np.int64)
-    bits = np.uint64(1) << (part[:, 1] * SUB_CELLS + part[:, 0]).astype(np.uint64)
-    masks[row, column] = 0
-    np.bitwise_or.at(masks, (row, column), bits)
-    cells = np.unique(row * spec.width + column)
-    return np.column_stack(np.divmod(cells, spec.width))
+    cells: NDArray[np.int64] = _mark(masks, np.ascontiguousarray(uv, np.float64))
+    return cells
 
 
 def points_of(masks: Masks, spec: GridSpec, cells: NDArray[np.int64]) -> Points:
@@ -52,12 +49,28 @@ def points_by_cell(
     masks: Masks, spec: GridSpec, cells: NDArray[np.int64]
 ) -> tuple[Points, NDArray[np.int64]]:
     """Return :func:`points_of`, and for each point the index (N,) of its cell."""
-    row, column = cells.T
-    bits = np.arange(SUB_CELLS**2, dtype=np.uint64)
-    which, bit = np.nonzero((masks[row, column][:, None] >> bits) & np.uint64(1))
-    u = column[which] + (bit % SUB_CELLS + 0.5) / SUB_CELLS
-    v = row[which] + (bit // SUB_CELLS + 0.5) / SUB_CELLS
-    return spec.origin.apply(np.column_stack([u, v]) * spec.resolution), which
+    uv, which = _points_by_cell(masks, np.ascontiguousarray(cells, np.int64))
+    return spec.origin.apply(uv * spec.resolution), which
+
+
+def marked_points(
+    masks: Masks, spec: GridSpec, cells: Cells, window: CellWindow
+) -> tuple[Points, NDArray[np.int64], NDArray[np.int64]]:
+    """Return the lethal cells with marked points in a window, and their points.
+
+    Args:
+        masks: (H, W).
+        spec: its geometry.
+        cells: (H, W) −1 unknown, 0 free … 100 lethal.
+        window: the cells to search.
+
+    Returns:
+        Points (N, 2) in the grid's frame, m, row by row; the index (N,) of the cell of
+        each; the cells (M, 2) row, column.
+    """
+    found = _lethal_marked(masks, cells, window)
+    points, which = points_by_cell(masks, spec, found)
+    return points, which, found
 
 
 def cell_points(
@@ -79,3 +92,73 @@ def cell_points(
 def point_radius(resolution: float) -> float:
     """Return half the edge of a sub-cell, m."""
     return 0.5 * resolution / SUB_CELLS
+
+
+@kernel
+def _mark(masks: Any, uv: Any) -> Any:
+    """Mark points (N, 2) u, v in cells; return the cells (M, 2), row by row."""
+    height, width = masks.shape
+    for k in range(uv.shape[0]):
+        u, v = uv[k, 0], uv[k, 1]
+        if 0 <= u < width and 0 <= v < height:
+            masks[int(v), int(u)] = 0
+    indices = np.empty(uv.shape[0], np.int64)
+    count = 0
+    for k in range(uv.shape[0]):
+        u, v = uv[k, 0], uv[k, 1]
+        if not (0 <= u < width and 0 <= v < height):
+            continue
+        row, column = int(v), int(u)
+        part = int(v % 1.0 * SUB_CELLS) * SUB_CELLS + int(u % 1.0 * SUB_CELLS)
+        if masks[row, column] == 0:
+            indices[count] = row * width + column
+            count += 1
+        masks[row, column] |= np.uint64(1) << np.uint64(part)
+    ordered = np.sort(indices[:count])
+    cells = np.empty((count, 2), np.int64)
+    for k in range(count):
+        cells[k, 0], cells[k, 1] = ordered[k] // width, ordered[k] % width
+    return cells
+
+
+@kernel
+def _points_by_cell(masks: Any, cells: Any) -> Any:
+    """Return the marked points (N, 2) u, v in cells, and the index of each one's."""
+    count = 0
+    for k in range(cells.shape[0]):
+        mask = masks[cells[k, 0], cells[k, 1]]
+        while mask != 0:
+            mask &= mask - np.uint64(1)
+            count += 1
+    points, which = np.empty((count, 2)), np.empty(count, np.int64)
+    found = 0
+    for k in range(cells.shape[0]):
+        row, column = cells[k, 0], cells[k, 1]
+        mask = masks[row, column]
+        bit = 0
+        while mask != 0:
+            if mask & np.uint64(1):
+                points[found, 0] = column + (bit % SUB_CELLS + 0.5) / SUB_CELLS
+                points[found, 1] = row + (bit // SUB_CELLS + 0.5) / SUB_CELLS
+                which[found] = k
+                found += 1
+            mask >>= np.uint64(1)
+            bit += 1
+    return points, which
+
+
+@kernel
+def _lethal_marked(masks: Any, cells: Any, window: Any) -> Any:
+    """Return the lethal cells (M, 2) of a window that have marked points."""
+    found = np.empty((64, 2), np.int64)
+    count = 0
+    for row in range(window.first_row, window.last_row):
+        line = cells[row, window.first_column : window.last_column]
+        for k in range(line.size):
+            if line[k] < LETHAL or masks[row, window.first_column + k] == 0:
+                continue
+            if count == found.shape[0]:
+                found = np.concatenate((found, np.empty_like(found)))
+            found[count, 0], found[count, 1] = row, window.first_column + k
+            count += 1
+    return found[:count].copy()

@@ -11,7 +11,9 @@ from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     FREE,
     LETHAL,
+    NO_CELLS,
     UNKNOWN,
+    CellWindow,
     Changes,
     GridSpec,
     SquareRegion,
@@ -19,11 +21,11 @@ from navette.navigation.grids import (
     cells_in_footprint,
     compare,
     mark_points,
+    marked_points,
     merge,
-    points_by_cell,
-    points_of,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
+from navette.navigation.mapping.marked_points import MarkedPoints
 from navette.navigation.mapping.methods import MAPPINGS
 from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
@@ -107,6 +109,8 @@ class MapMemory:
         self._cells = cells.copy()
         self._masks = np.zeros(self.spec.shape, np.uint64)
         self._vanished = VanishedCells(self.spec.shape)
+        self._marked = MarkedPoints()
+        self._changed: CellWindow | None = None
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
             self._log_odds = self._evidence_of(cells)
@@ -126,6 +130,7 @@ class MapMemory:
         self._masks[cleared] = 0
         if self._log_odds is not None:
             self._log_odds[cleared] = self._evidence_of(self._base[cleared])
+        self._note_change(CellWindow.whole(self.spec.shape))
 
     def fuse(self, costmap: PlacedCostmap) -> bool:
         """Fuse a costmap; return False, without effect, if it has no known cell."""
@@ -133,12 +138,14 @@ class MapMemory:
         if corners is None:
             return False
         self._grow(corners)
-        kept = self._kept(costmap)
+        window = self._window_of(costmap)
+        kept = self._kept(costmap, window)
         lethal_cells = self._mark(costmap.hits)
         if self._own is not None:
             self._cells = self._own.update(
                 self._cells, self.spec, costmap.cells, costmap.spec
             )
+            window = CellWindow.whole(self.spec.shape)
         elif self._log_odds is not None:
             self._add_evidence(self._log_odds, costmap, lethal_cells)
         else:
@@ -156,8 +163,40 @@ class MapMemory:
         if self.footprint is not None:
             self._free_under(self.footprint, costmap.map_T_base)
         if self._log_odds is not None:
-            self._cells = self._occupancy_of(self._log_odds)
+            evidence = self._log_odds[window.slices]
+            self._cells[window.slices] = self._occupancy_of(evidence)
+        self._note_change(window)
         return True
+
+    def take_change(self) -> CellWindow | None:
+        """Return the cells that may have changed since the last call.
+
+        None: the extent has changed, or the map was replaced.
+        """
+        changed, self._changed = self._changed, NO_CELLS
+        return changed
+
+    def _note_change(self, window: CellWindow) -> None:
+        if self._changed is not None:
+            self._changed = self._changed.union(window)
+        self._marked.drop(window)
+
+    def _window_of(self, costmap: PlacedCostmap) -> CellWindow:
+        """Return the cells that fusing a costmap may change."""
+        spec, resolution = costmap.spec, self.spec.resolution
+        width, height = spec.width * spec.resolution, spec.height * spec.resolution
+        corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
+        reach = 0.0 if self.footprint is None else self.footprint.circumscribed_radius
+        base, sensor = costmap.map_T_base, costmap.sensor
+        body = [(base.x + s * reach, base.y + s * reach) for s in (-1.0, 1.0)]
+        points = np.concatenate([spec.origin.apply(corners), body, [sensor]])
+        if costmap.hits is not None and len(costmap.hits):
+            # Beams that end outside a costmap of the user's own pass cells there.
+            low, high = costmap.hits.min(axis=0), costmap.hits.max(axis=0)
+            points = np.concatenate([points, [low, high]])
+        return CellWindow.around(
+            self.spec, points, 2 + math.ceil(spec.resolution / resolution)
+        )
 
     def occupancy(self) -> NDArray[np.int8]:
         """Return a copy (H, W) of the map: -1 unknown, 0 free … 100 lethal."""
@@ -169,8 +208,7 @@ class MapMemory:
         A lethal cell without such a point was lethal in a loaded map, or in a costmap
         without points.
         """
-        lethal = (self._cells >= LETHAL) & (self._masks != 0)
-        return points_of(self._masks, self.spec, np.argwhere(lethal))
+        return self._marked.points(self._masks, self.spec, self._cells)
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
         """Count obstacle cells near the robot that contradict the map."""
@@ -215,6 +253,8 @@ class MapMemory:
         if growth is None:
             return
         pad = (growth.rows, growth.columns)
+        self._changed = None
+        self._marked.clear()
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
@@ -223,38 +263,43 @@ class MapMemory:
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
 
-    def _kept(self, costmap: PlacedCostmap) -> NDArray[np.int64]:
+    def _kept(self, costmap: PlacedCostmap, window: CellWindow) -> NDArray[np.int64]:
         """Free the lethal cells whose obstacles vanished.
 
         Return those (N, 2) that ``overwrite`` keeps without an echo.
         """
         if costmap.hits is None or self.params.fusion != "overwrite":
             return np.empty((0, 2), np.int64)
-        lethal = np.argwhere((self._cells >= LETHAL) & (self._masks != 0))
-        points, which = points_by_cell(self._masks, self.spec, lethal)
+        points, which, lethal = marked_points(
+            self._masks, self.spec, self._cells, window
+        )
         uv = self.spec.origin.inverse().apply(costmap.hits) / self.spec.resolution
         hit_cells = np.floor(uv[:, ::-1]).astype(np.int64)
         inside = (hit_cells >= 0) & (hit_cells < self.spec.shape)
-        beside = cells_beside(hit_cells[inside.all(axis=1)], self.spec.shape)
+        beside = cells_beside(hit_cells[inside.all(axis=1)], window)
         through = passed(points, costmap.hits, costmap.sensor)
         silent = without_echo(
             points, costmap.hits, costmap.sensor, self.spec.resolution
         )
         silent[silent] = _is_free(costmap, points[silent])
         through |= silent
-        rows, columns = self._vanished.update(lethal[which][through], beside).T
+        gone = self._vanished.update(lethal[which][through], beside, window)
+        rows, columns = gone.T
         self._cells[rows, columns] = FREE
         self._masks[rows, columns] = 0
         rows, columns = lethal.T
-        still = (self._cells[rows, columns] >= LETHAL) & ~beside[rows, columns]
-        return lethal[still]
+        still = self._cells[rows, columns] >= LETHAL
+        still &= ~beside[rows - window.first_row, columns - window.first_column]
+        silent_cells: NDArray[np.int64] = lethal[still]
+        return silent_cells
 
     def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
         """Store where beams ended; return the cells (M, 2) with these points."""
         if hits is not None:
             return mark_points(self._masks, self.spec, hits)
         # Lethal cells of this costmap have no points, and older ones may mislead.
-        self._masks[:] = 0
+        self._masks = np.zeros(self.spec.shape, np.uint64)
+        self._marked.clear()
         return None
 
     def _add_evidence(

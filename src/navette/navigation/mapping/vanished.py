@@ -8,6 +8,8 @@ where an earlier one ended does: something that stood there would have ended it 
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.grids import CellWindow
+
 Points = NDArray[np.float64]
 
 _ASIDE_M = 0.007
@@ -32,32 +34,42 @@ class VanishedCells:
         self._passes = np.pad(self._passes, pad)
 
     def update(
-        self, cells: NDArray[np.int64], beside: NDArray[np.bool_]
+        self, cells: NDArray[np.int64], beside: NDArray[np.bool_], window: CellWindow
     ) -> NDArray[np.int64]:
         """Return the cells (K, 2) whose obstacles are gone.
 
         Args:
-            cells: (N, 2) cells with a point that a beam of this scan passed.
-            beside: (H, W) cells with an echo in this scan, or beside one.
+            cells: (N, 2) cells of the window with a point that a beam of this scan
+                passed.
+            beside: cells of the window with an echo in this scan, or beside one.
+            window: the part of the map that the scan may change.
         """
-        self._passes[beside] = 0
-        rows, columns = np.unique(cells, axis=0).T
+        passes = self._passes[window.slices]
+        passes[beside] = 0
+        first = np.array((window.first_row, window.first_column))
+        rows, columns = np.unique(cells - first, axis=0).T
         still = ~beside[rows, columns]
         rows, columns = rows[still], columns[still]
-        self._passes[rows, columns] += 1
-        gone = self._passes[rows, columns] >= _TIMES
+        passes[rows, columns] += 1
+        gone = passes[rows, columns] >= _TIMES
         rows, columns = rows[gone], columns[gone]
-        self._passes[rows, columns] = 0
-        return np.column_stack([rows, columns])
+        passes[rows, columns] = 0
+        vanished: NDArray[np.int64] = np.column_stack([rows, columns]) + first
+        return vanished
 
 
-def cells_beside(cells: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:
-    """Return (H, W) the cells (N, 2) and the eight around each."""
-    mask = np.zeros((shape[0] + 2, shape[1] + 2), np.bool_)
-    for i in range(3):
-        for j in range(3):
-            mask[cells[:, 0] + i, cells[:, 1] + j] = True
-    return mask[1:-1, 1:-1]
+def cells_beside(cells: NDArray[np.int64], window: CellWindow) -> NDArray[np.bool_]:
+    """Return the cells (N, 2) and the eight around each, as a mask of a window."""
+    height, width = window.shape
+    mask = np.zeros((height + 4, width + 4), np.bool_)
+    rows = cells[:, 0] - window.first_row + 2
+    columns = cells[:, 1] - window.first_column + 2
+    near = (rows >= 1) & (rows <= height + 2) & (columns >= 1) & (columns <= width + 2)
+    rows, columns = rows[near], columns[near]
+    for i in (-1, 0, 1):
+        for j in (-1, 0, 1):
+            mask[rows + i, columns + j] = True
+    return mask[2:-2, 2:-2]
 
 
 def without_echo(

@@ -1,0 +1,24 @@
+"""Selection of the scans that become costmaps, where a sensor is faster than needed."""
+
+
+class ScanSelection:
+    """Selects the last scan of each period: the newest that a reader at its end gets.
+
+    Periods begin at multiples of their length. The next stamp is predicted from the
+    interval between the last two.
+
+    Args:
+        rate_hz: periods a second; 0 selects every scan.
+    """
+
+    def __init__(self, rate_hz: float) -> None:
+        self._period_ns = round(1e9 / rate_hz) if rate_hz > 0 else 0
+        self._last_ns: int | None = None
+
+    def takes(self, stamp_ns: int) -> bool:
+        """Return whether to use the scan with this stamp; called for each."""
+        last_ns, self._last_ns = self._last_ns, stamp_ns
+        if not self._period_ns or last_ns is None or stamp_ns <= last_ns:
+            return True
+        next_ns = 2 * stamp_ns - last_ns
+        return next_ns // self._period_ns > stamp_ns // self._period_ns
