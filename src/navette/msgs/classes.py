@@ -124,6 +124,7 @@ def _make_action(spec: ActionSpec) -> type:
 
 def _namespace_class(name: str, **members: type) -> type:
     def refuse(cls: type, *_: object, **__: object) -> Any:
+        # As rosidl's classes of services and actions: they only group messages.
         raise NotImplementedError(
             f"{name} is not a message: use its {', '.join(members)} classes"
         )

@@ -219,7 +219,7 @@ class Task(Future[T]):
             self._step()
         except StopIteration as stop:
             self.set_result(stop.value)
-        except Exception as error:
+        except Exception as error:  # a coroutine may raise anything
             if self.on_error is None:
                 self.set_exception(error)
             else:

@@ -486,7 +486,7 @@ class EventLoop:
             count += 1
             try:
                 result = entity.run()
-            except Exception as error:
+            except Exception as error:  # a callback may raise anything
                 self._raise(entity.origin(), error)
             if result is not None and isinstance(result, Coroutine):
                 self._start(entity, result, rules)

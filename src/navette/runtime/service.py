@@ -85,7 +85,7 @@ class Service(ServiceEndpoint, Entity):
             if not isinstance(result, Coroutine):
                 self._respond(request.id, result)
                 return None
-        except Exception as error:
+        except Exception as error:  # a callback may raise anything; raised again
             self._fail(request.id, error)
             raise
         return self._respond_later(request.id, result)
@@ -130,7 +130,7 @@ class Service(ServiceEndpoint, Entity):
     ) -> None:
         try:
             self._respond(request_id, await result)
-        except Exception as error:
+        except Exception as error:  # a callback may raise anything; raised again
             self._fail(request_id, error)
             raise
 

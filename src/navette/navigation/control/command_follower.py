@@ -6,34 +6,34 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.errors import InvalidValueError
-from navette.geometry import Footprint, Pose2, angle_difference
-from navette.navigation.control.command_gate import CommandGate
+from navette.geometry import Pose2, angle_difference
 from navette.navigation.control.controller_parts import collision_check
+from navette.navigation.control.follower import (
+    BLOCKED_SCALE,
+    BaseFollower,
+    TrackingErrors,
+    nearest_index,
+)
 from navette.navigation.control.limits import (
-    NO_CAP,
-    STOP,
     SpeedCap,
     VelocityCommand,
     approach,
     brake,
     clamp,
 )
-from navette.navigation.control.moving_obstacles import safe_share
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
-    FARTHEST_M,
     FollowerInputs,
     FollowerOutput,
+    check_poses,
 )
 from navette.navigation.control.speed_profile import approach_speed
 from navette.navigation.control.states import ControlState, LimitedBy
-from navette.navigation.grids import NO_DISCS, NONE_UNSEEN, disc_outlines
+from navette.navigation.grids import NONE_UNSEEN, disc_outlines
 from navette.params.plugins import checked_array, own_call
 
 _AHEAD_M = 2.0  # how far along the path the robot may be beyond the last place
 _OBSTACLES_M = 6.0  # distance around the robot within which obstacles are given
-_BLOCKED_SCALE = 0.1
 _STOPPED_MPS = 0.05
 
 
@@ -79,8 +79,8 @@ class CommandMethod(Protocol):
         """
 
 
-class CommandFollower:
-    """Follow paths with a :class:`CommandMethod`; the interface is that of a follower.
+class CommandFollower(BaseFollower):
+    """Follow paths with a :class:`CommandMethod`.
 
     The method chooses the command. Stale inputs, the limits of speed and acceleration,
     the collision check and the end of the path are looked after here.
@@ -92,54 +92,33 @@ class CommandFollower:
     """
 
     def __init__(self, params: ControlParams, method: CommandMethod, name: str) -> None:
-        self._params = params
         self._method = method
         self._name = f"controller {name}: command(state, path, obstacles)"
-        self._gate = CommandGate(params)
-        self._collision = collision_check(params)
-        self._cap = NO_CAP
         self._obstacles = np.empty((0, 2))
-        self._discs = NO_DISCS
-        self._body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
-        self.reset()
+        super().__init__(params, collision_check(params))
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
-        """Drop the path and stop at once; ``rest`` is the state to report."""
+        super().reset(rest)
         self._path = np.empty((0, 3))
         self._measure = np.empty(0)
         self._at = 0
-        self._rest: ControlState | None = rest
-        self._last: VelocityCommand | None = None
         self._cross_track = self._heading_error = 0.0
-        self._clearance, self._scale = math.inf, 1.0
-        self._limited_by = LimitedBy.NONE
-
-    @property
-    def has_path(self) -> bool:
-        """Whether a path is being followed."""
-        return self._rest is None
 
     @property
     def obstacle_reach_m(self) -> float:
-        """Distance around the robot within which obstacles matter."""
-        return max(self._collision.reach(self._params.max_speed_mps), _OBSTACLES_M)
+        return max(super().obstacle_reach_m, _OBSTACLES_M)
+
+    @property
+    def unseen_reach_m(self) -> float:
+        # The method may drive backwards at full speed.
+        return self._collision.reach(self._params.max_speed_mps)
 
     def set_path(self, poses: NDArray[np.float64]) -> None:
-        """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
-
-        Raises:
-            InvalidValueError: not (N, 3) or not finite; the follower is then reset.
-        """
         last, drove = self._last, self.has_path
         self.reset()
         if len(poses) == 0:
             return
-        if poses.ndim != 2 or poses.shape[1] != 3:
-            raise InvalidValueError(f"path of shape {poses.shape}: expected (N, 3)")
-        if not (np.abs(poses) <= FARTHEST_M).all():
-            raise InvalidValueError(
-                f"path: expected finite values within ±{FARTHEST_M:g} m"
-            )
+        check_poses(poses)
         steps = np.diff(poses[:, :2], axis=0)
         self._path = poses
         self._measure = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
@@ -147,33 +126,18 @@ class CommandFollower:
         if not drove:
             self._restart()
 
-    @property
-    def unseen_reach_m(self) -> float:
-        """Distance around the robot within which unseen space matters."""
-        return self._collision.reach(self._params.max_speed_mps)
-
     def set_obstacles(
         self,
         points: NDArray[np.float64],
         half_cell: float,
         unseen: NDArray[np.float64] = NONE_UNSEEN,
     ) -> None:
-        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
-        self._collision.set_obstacles(points, half_cell, unseen)
+        super().set_obstacles(points, half_cell, unseen)
         self._obstacles = points
 
-    def set_moving(self, discs: NDArray[np.float64]) -> None:
-        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
-        self._discs = discs
-
     def pause(self) -> None:
-        """Continue later from the robot's motion then, not from the last command."""
         self._last = None
         self._restart()
-
-    def limit_speed(self, limits: SpeedCap) -> None:
-        """Drive no faster than these limits, from the next step on."""
-        self._cap = limits
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
         """Return the command for the next ``dt`` seconds.
@@ -181,12 +145,9 @@ class CommandFollower:
         Raises:
             MethodFaultError: the method raised or returned something else.
         """
-        stale = self._gate.stale(inputs.ages)
-        if self._rest is not None or stale is not None or not inputs.plausible:
-            state = self._rest or stale or ControlState.STALE_ODOMETRY
-            output = self._emit(STOP, state)
-            self._last = None  # continue from the measured motion
-            return output
+        stopped = self._at_rest(inputs)
+        if stopped is not None:
+            return stopped
         last = clamp(
             self._last or VelocityCommand(inputs.speed, inputs.turn_rate), self._params
         )
@@ -197,10 +158,10 @@ class CommandFollower:
                 command = brake(last, self._params, dt)
                 return self._emit(command, ControlState.FOLLOWING)
             self._rest = ControlState.REACHED
-            return self._emit(STOP, ControlState.REACHED)
+            return self._stop(ControlState.REACHED)
         if abs(self._cross_track) > self._params.max_deviation_m:
             return self._emit(brake(last, self._params, dt), ControlState.OFF_PATH)
-        wanted = self._cap.applied_to(self._wanted(inputs, dt))
+        wanted = self._speed_limits.applied_to(self._wanted(inputs, dt))
         stopping = self._stopping(inputs).applied_to(wanted)
         command = approach(last, stopping, self._params, dt)
         if stopping != wanted:
@@ -237,32 +198,26 @@ class CommandFollower:
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
-        if scale < _BLOCKED_SCALE:
-            return self._emit(STOP, ControlState.BLOCKED)
-        margin_m = self._params.moving_clearance_m / 2
-        motion = command.speed, command.turn_rate
-        yielding = safe_share(pose, motion, self._discs, self._body_m, margin_m)
-        self._scale = scale = min(1.0, scale, yielding)
-        if scale < 1.0:
-            self._limited_by = LimitedBy.COLLISION_CHECK
-        return self._emit(command.scaled(scale), ControlState.FOLLOWING)
+        if scale < BLOCKED_SCALE:
+            return self._stop(ControlState.BLOCKED)
+        self._yield_to_moving(pose, command, scale)
+        return self._emit(command.scaled(self._scale), ControlState.FOLLOWING)
 
     def _advance(self, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""
-        while True:
-            end_m = self._measure[self._at] + _AHEAD_M
-            stop = max(int(np.searchsorted(self._measure, end_m)), self._at + 1)
-            near = self._path[self._at : stop]
-            dx, dy = pose.x - near[:, 0], pose.y - near[:, 1]
-            best = int(np.argmin(np.hypot(dx, dy)))
-            self._at += best
-            # The robot may be far along a path that is published again.
-            if best == 0 or self._at + 1 < stop:
-                break
-        yaw = self._path[self._at, 2]
-        side = math.cos(yaw) * dy[best] - math.sin(yaw) * dx[best]
-        self._cross_track = math.copysign(math.hypot(dx[best], dy[best]), side)
-        self._heading_error = angle_difference(pose.yaw, float(yaw))
+        self._at = nearest_index(
+            self._measure,
+            self._at,
+            _AHEAD_M,
+            lambda near: np.hypot(
+                pose.x - self._path[near, 0], pose.y - self._path[near, 1]
+            ),
+        )
+        x, y, yaw = self._path[self._at].tolist()
+        dx, dy = pose.x - x, pose.y - y
+        side = math.cos(yaw) * dy - math.sin(yaw) * dx
+        self._cross_track = math.copysign(math.hypot(dx, dy), side)
+        self._heading_error = angle_difference(pose.yaw, yaw)
 
     def _ends(self, inputs: FollowerInputs) -> bool:
         """Return whether the robot is at the end of the path."""
@@ -288,20 +243,6 @@ class CommandFollower:
         if restart is not None:
             own_call(self._name, restart)
 
-    def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
-        """Pass the command through the gate and store it as the last one."""
-        refusal = self._gate.refusal(command)
-        if refusal is not None:
-            command, state = STOP, refusal
-        self._last = command if self._rest is None else None
-        left = self._left_m if self._rest is None else 0.0
-        return FollowerOutput(
-            command,
-            state,
-            self._cross_track,
-            self._heading_error,
-            left,
-            self._clearance,
-            self._scale,
-            self._limited_by,
-        )
+    def _errors(self) -> TrackingErrors:
+        left = self._left_m if self.has_path else 0.0
+        return TrackingErrors(self._cross_track, self._heading_error, left)

@@ -21,7 +21,7 @@ from navette.navigation.control.polyline import (
     split_at,
     turn_angles,
 )
-from navette.navigation.control.records import FARTHEST_M
+from navette.navigation.control.records import check_poses
 
 SAMPLE_M = 0.05  # spacing of the points on a piece
 _LONGEST_M = 1e5
@@ -95,16 +95,10 @@ def split_path(poses: NDArray[np.float64], params: ControlParams) -> list[Piece]
 
 
 def _check(poses: NDArray[np.float64]) -> None:
-    if poses.ndim != 2 or poses.shape[1] != 3 or not np.all(np.isfinite(poses)):
-        raise InvalidValueError(
-            f"path of shape {poses.shape}: expected finite poses (N, 3) x, y, yaw"
-        )
+    check_poses(poses)
     span = float(np.abs(np.diff(poses[:, :2], axis=0)).sum())
-    if np.abs(poses[:, :2]).max(initial=0.0) > FARTHEST_M or span > _LONGEST_M:
-        raise InvalidValueError(
-            f"path of {span:g} m: must be at most {_LONGEST_M:g} m, "
-            f"coordinates up to ±{FARTHEST_M:g} m"
-        )
+    if span > _LONGEST_M:
+        raise InvalidValueError(f"path of {span:g} m: must be at most {_LONGEST_M:g} m")
 
 
 def _directions(poses: NDArray[np.float64]) -> list[int]:

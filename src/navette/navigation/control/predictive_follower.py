@@ -11,8 +11,13 @@ from navette.errors import InvalidValueError
 from navette.geometry import ACKERMANN, Footprint, Pose2, advanced
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import TurnParts
+from navette.navigation.control.follower import (
+    BLOCKED_SCALE,
+    BaseFollower,
+    TrackingErrors,
+    nearest_index,
+)
 from navette.navigation.control.limits import (
-    NO_CAP,
     STOP,
     SpeedCap,
     VelocityCommand,
@@ -25,9 +30,9 @@ from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
-    FARTHEST_M,
     FollowerInputs,
     FollowerOutput,
+    check_poses,
 )
 from navette.navigation.control.rollouts import (
     METRES_PER_RADIAN,
@@ -36,7 +41,6 @@ from navette.navigation.control.rollouts import (
 from navette.navigation.control.rotate import TurnInPlace
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import (
-    NO_DISCS,
     NONE_UNSEEN,
     body_points,
 )
@@ -45,7 +49,6 @@ _CELL_M = 0.05  # of the distance field
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
-_BLOCKED_SCALE = 0.1
 _BODY_REACH_M = 1.0  # of the robot and the clearance that it keeps
 _BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
 # Rest of the path, turns included, at which its end is reached, and the heading error
@@ -70,70 +73,44 @@ class _Mode(NamedTuple):
 
 
 @CONTROLLERS.register("mppi")
-class PredictiveFollower:
-    """Follow paths of poses; the interface is that of ``PathFollower``."""
+class PredictiveFollower(BaseFollower):
+    """Follow paths of poses by sampling command sequences."""
 
     Params = ControlParams
 
     def __init__(self, params: ControlParams) -> None:
-        self._params = params
         self._parts = TurnParts.of(params)
-        self._collision = self._parts.collision
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._calm = _Mode.of(params, self._body, swerves=False)
         self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
         self._field = open_field()
-        self._speed_limits = NO_CAP
-        self._discs = NO_DISCS
-        self.reset()
+        super().__init__(params, self._parts.collision)
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
-        """Drop the path and stop at once; ``rest`` is the state to report."""
+        super().reset(rest)
         self._path: PathWindow | None = None
         self._at = 0
         self._last_turn: TurnInPlace | None = None
-        self._rest: ControlState | None = rest
-        self._last: VelocityCommand | None = None
-        self._clearance = math.inf
         self._cross_track = self._heading_error = 0.0
-        self._scale = 1.0
         self._mode.mppi.reset()
 
     @property
-    def has_path(self) -> bool:
-        """Whether a path is being followed."""
-        return self._rest is None
-
-    @property
     def obstacle_reach_m(self) -> float:
-        """Distance around the robot within which obstacles matter."""
-        params = self._params
-        return max(
-            self._collision.reach(params.max_speed_mps),
-            params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5,
-        )
+        reach_m = self._params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5
+        return max(super().obstacle_reach_m, reach_m)
 
     @property
     def unseen_reach_m(self) -> float:
-        """Distance around the robot within which unseen space matters."""
         return self._collision.reach(self._evasive.params.reverse_speed_mps)
 
     def set_path(self, poses: NDArray[np.float64]) -> None:
-        """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
-
-        Raises:
-            InvalidValueError: not (N, 3) or not finite; the follower is then reset.
-        """
-        if poses.ndim != 2 or poses.shape[1] != 3 or not np.isfinite(poses).all():
+        try:
+            check_poses(poses)
+        except InvalidValueError:
             self.reset()
-            raise InvalidValueError(
-                f"path of shape {poses.shape}: expected finite poses (N, 3)"
-            )
-        if len(poses) and np.abs(poses[:, :2]).max() > FARTHEST_M:
-            self.reset()
-            raise InvalidValueError(f"path: farther than {FARTHEST_M:g} m")
+            raise
         last, clearance, drove = self._last, self._clearance, self.has_path
         if len(poses) == 0:
             self.reset()
@@ -147,13 +124,8 @@ class PredictiveFollower:
         self._last, self._clearance = last, clearance
 
     def pause(self) -> None:
-        """Continue later from the robot's motion then, not from the last command."""
         self._last = None
         self._mode.mppi.reset()
-
-    def limit_speed(self, limits: SpeedCap) -> None:
-        """Drive no faster than these limits, from the next step on."""
-        self._speed_limits = limits
 
     def set_obstacles(
         self,
@@ -161,25 +133,17 @@ class PredictiveFollower:
         half_cell: float,
         unseen: NDArray[np.float64] = NONE_UNSEEN,
     ) -> None:
-        """Store the values of :class:`navette.navigation.grids.Obstacles`."""
-        self._collision.set_obstacles(points, half_cell, unseen)
+        super().set_obstacles(points, half_cell, unseen)
         self._field = local_field(
             points, _CELL_M, self._params.mppi_clearance_m + 1.0, half_cell
         )
 
-    def set_moving(self, discs: NDArray[np.float64]) -> None:
-        """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
-        self._discs = discs
-
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
-        """Return the command for the next ``dt`` seconds."""
-        stale = self._mode.gate.stale(inputs.ages)
-        if self._rest is not None or stale is not None or not inputs.plausible:
-            output = self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
-            self._last = None  # continue from the measured motion
-            return output
+        stopped = self._at_rest(inputs)
+        if stopped is not None:
+            return stopped
         assert self._path is not None, "a path is being followed"
-        self._scale = 1.0
+        self._scale, self._limited_by = 1.0, LimitedBy.NONE
         self._advance(self._path, inputs.pose)
         last = self._last or VelocityCommand(
             inputs.speed, inputs.turn_rate, inputs.side_speed
@@ -207,7 +171,7 @@ class PredictiveFollower:
             discs,
         )
         command = approach(last, wanted, params, dt)
-        eased = self._mode.gate.eased(command, inputs.ages)
+        eased = self._gate.eased(command, inputs.ages)
         return self._keep_clear(inputs.pose, eased)
 
     def _near_discs(self, pose: Pose2) -> NDArray[np.float64]:
@@ -223,7 +187,7 @@ class PredictiveFollower:
     def _choose_mode(self, mode: "_Mode") -> None:
         if mode is not self._mode:
             mode.mppi.continue_from(self._mode.mppi)
-            self._mode = mode
+            self._mode, self._gate = mode, mode.gate
 
     def _turn_to_end(
         self,
@@ -250,7 +214,7 @@ class PredictiveFollower:
             return self._emit(brake(last, params, dt), decision.state)
         self._parts.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
         command = approach(last, decision.command, params, dt)
-        eased = self._mode.gate.eased(command, inputs.ages)
+        eased = self._gate.eased(command, inputs.ages)
         return self._keep_clear(inputs.pose, eased)
 
     def _come_to_rest(self, last: VelocityCommand, dt: float) -> FollowerOutput:
@@ -272,30 +236,27 @@ class PredictiveFollower:
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
-        if scale < _BLOCKED_SCALE:
+        if scale < BLOCKED_SCALE:
             return self._emit(STOP, ControlState.BLOCKED)
-        self._scale = scale = min(1.0, scale)
-        return self._emit(command.scaled(scale), ControlState.FOLLOWING)
+        self._set_scale(min(1.0, scale))
+        return self._emit(command.scaled(self._scale), ControlState.FOLLOWING)
 
     def _advance(self, path: PathWindow, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""
-        while True:
-            end_m = path.measure[self._at] + _SEARCH_M
-            stop = max(int(np.searchsorted(path.measure, end_m)), self._at + 1)
-            near = slice(self._at, stop)
-            dx, dy = pose.x - path.x[near], pose.y - path.y[near]
-            away = np.hypot(dx, dy)
-            c, s = math.cos(pose.yaw), math.sin(pose.yaw)
-            error = np.arccos(np.clip(c * path.cos[near] + s * path.sin[near], -1, 1))
-            best = int(np.argmin(away + METRES_PER_RADIAN * error))
-            self._at += best
-            # The robot may be far along a path that is published again.
-            if best == 0 or self._at + 1 < stop:
-                break
-        side = path.cos[self._at] * dy[best] - path.sin[self._at] * dx[best]
-        self._cross_track = math.copysign(float(away[best]), side)
-        turned = path.cos[self._at] * s - path.sin[self._at] * c
-        self._heading_error = math.copysign(float(error[best]), turned)
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+
+        def distances(near: slice) -> NDArray[np.float64]:
+            away = np.hypot(pose.x - path.x[near], pose.y - path.y[near])
+            cosine = c * path.cos[near] + s * path.sin[near]
+            error = np.arccos(np.clip(cosine, -1, 1))
+            return np.asarray(away + METRES_PER_RADIAN * error)
+
+        self._at = at = nearest_index(path.measure, self._at, _SEARCH_M, distances)
+        dx, dy = pose.x - float(path.x[at]), pose.y - float(path.y[at])
+        path_c, path_s = float(path.cos[at]), float(path.sin[at])
+        self._cross_track = math.copysign(math.hypot(dx, dy), path_c * dy - path_s * dx)
+        error = math.acos(max(-1.0, min(1.0, c * path_c + s * path_s)))
+        self._heading_error = math.copysign(error, path_c * s - path_s * c)
 
     def _near(self, path: PathWindow) -> PathWindow:
         """Return the stretch that the robot can drive within the horizon."""
@@ -327,27 +288,13 @@ class PredictiveFollower:
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         self._mode.mppi.reset()
-        return self._emit(STOP, state)
+        return super()._stop(state)
 
-    def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
-        """Pass the command through the gate and store it as the last one."""
-        refusal = self._mode.gate.refusal(command)
-        if refusal is not None:
-            command, state = STOP, refusal
-        self._last = command if self._rest is None else None
+    def _errors(self) -> TrackingErrors:
         left = 0.0
-        if self._path is not None and self._rest is None:
+        if self._path is not None and self.has_path:
             left = float(self._path.measure[-1] - self._path.measure[self._at])
-        return FollowerOutput(
-            command,
-            state,
-            self._cross_track,
-            self._heading_error,
-            left,
-            self._clearance,
-            self._scale,
-            LimitedBy.COLLISION_CHECK if self._scale < 1.0 else LimitedBy.NONE,
-        )
+        return TrackingErrors(self._cross_track, self._heading_error, left)
 
 
 def evasive(params: ControlParams) -> ControlParams:

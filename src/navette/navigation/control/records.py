@@ -4,6 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.control.command_gate import FRESH, InputAges
 from navette.navigation.control.limits import VelocityCommand
@@ -12,6 +16,19 @@ from navette.navigation.control.states import ControlState, LimitedBy
 FARTHEST_M = 1e8  # from the map's origin; UTM northings reach 1e7
 _FASTEST = 1e3  # m/s, rad/s
 UNKNOWN_POSE = Pose2(math.nan, math.nan, math.nan)
+
+
+def check_poses(poses: NDArray[np.float64]) -> None:
+    """Raise InvalidValueError unless the poses are (N, 3), finite, and not too far."""
+    if poses.ndim != 2 or poses.shape[1] != 3 or not np.isfinite(poses).all():
+        raise InvalidValueError(
+            f"path of shape {poses.shape}: expected finite poses (N, 3) x, y, yaw"
+        )
+    if np.abs(poses[:, :2]).max(initial=0.0) > FARTHEST_M:
+        raise InvalidValueError(
+            f"path of {len(poses)} poses: expected all within {FARTHEST_M:g} m of the "
+            "map's origin"
+        )
 
 
 @dataclass(frozen=True)

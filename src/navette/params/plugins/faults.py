@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from navette.errors import NavetteError
 
-_PACKAGE = Path(__file__).parents[1]
+_PACKAGE = Path(__file__).parents[2]
 _LONGEST_REPR = 200
 
 
@@ -28,7 +28,7 @@ def own_call(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
     """
     try:
         return function(*arguments)
-    except Exception as error:
+    except Exception as error:  # a user's method may raise anything
         lines = "".join(traceback.format_list(_own_frames(error.__traceback__)))
         raise MethodFaultError(
             f"{name} raised {type(error).__name__}: {error}\n{lines}".rstrip()

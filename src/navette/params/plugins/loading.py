@@ -150,7 +150,7 @@ def load_module(source: str) -> ModuleType:
         raise UnknownNameError(
             f"module {source!r} is not installed and not in {Path.cwd()}"
         ) from None
-    except Exception as error:
+    except Exception as error:  # the module's own code may raise anything
         raise _failed(source, error) from error
 
 
@@ -176,7 +176,7 @@ def _load_file(path: Path) -> ModuleType:
     module = sys.modules[name] = module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except Exception as error:  # the file's own code may raise anything
         del sys.modules[name]
         raise _failed(str(path), error) from error
     return module

@@ -65,7 +65,7 @@ class ComponentManager:
                 takes_context = "context" in inspect.signature(node_class).parameters
                 node = node_class(context=context) if takes_context else node_class()
                 context.check_overrides([n for n in context.nodes if n not in before])
-        except Exception:  # of the component's own code: any; raised again
+        except Exception:  # the component may raise anything; raised again
             for half_made in [n for n in context.nodes if n not in before]:
                 half_made.destroy_node()
             raise

@@ -188,7 +188,7 @@ class LifecycleNodeMixin(ManagedEntity):
         callback: Callable[[LifecycleState], Any] = getattr(self, name)
         try:
             return _checked(callback(before), name, self)
-        except Exception:
+        except Exception:  # a callback may raise anything: the transition fails
             self._node.get_logger().error(f"{name} raised:\n{traceback.format_exc()}")
             return TransitionCallbackReturn.ERROR
 

@@ -32,5 +32,5 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Do the work; return the entities to visit next."""
-        raise NotImplementedError
+        """Do the work; return the entities to visit next. The default does nothing."""
+        return None

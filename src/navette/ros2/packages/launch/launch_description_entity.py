@@ -20,8 +20,8 @@ class LaunchDescriptionEntity:
     origin: str = ""
 
     def visit(self, context: LaunchContext) -> "list[LaunchDescriptionEntity] | None":
-        """Do the work; return the entities to visit next."""
-        raise NotImplementedError
+        """Do the work; return the entities to visit next. The default does nothing."""
+        return None
 
     def describe(self) -> str:
         """Describe the entity in an error message or a listing."""

@@ -131,7 +131,7 @@ def get_launch_description_from_python_launch_file(
         raise InvalidPythonLaunchFileError(f"{path}: has no {_FUNCTION}()")
     try:
         description = function()
-    except Exception as error:  # as above
+    except Exception as error:  # a user's function may raise anything
         raise _error(path, error) from error
     if not isinstance(description, LaunchDescription):
         raise InvalidPythonLaunchFileError(

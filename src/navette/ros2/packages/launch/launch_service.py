@@ -227,5 +227,5 @@ def _locate_errors(where: str, entity: str, work: Callable[[], Any]) -> Any:
         return work()
     except LaunchError:
         raise
-    except Exception as error:
+    except Exception as error:  # a user's entity may raise anything
         raise LaunchError.at(where, entity, error) from error

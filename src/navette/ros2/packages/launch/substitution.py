@@ -13,7 +13,8 @@ class Substitution:
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text, given the launch's configurations and environment."""
-        raise NotImplementedError
+        # As in ROS 2: a substitution without a text is a fault of the derived class.
+        raise NotImplementedError(f"{type(self).__name__} does not implement perform()")
 
     def describe(self) -> str:
         """Describe the substitution in an error message or a listing."""
