@@ -1,0 +1,152 @@
+/** visualization_msgs Marker and MarkerArray. */
+
+import { nextFrame } from "../../ui/frames";
+import { Display } from "../display";
+import { transformOf, type Marker } from "../messages";
+import { colourOf, type Colour, type Part, type Primitive } from "../primitives";
+import { MeshStore } from "./meshes";
+
+const ARROW = 0, CUBE = 1, SPHERE = 2, CYLINDER = 3, LINE_STRIP = 4, LINE_LIST = 5, CUBE_LIST = 6, SPHERE_LIST = 7;
+const POINTS = 8, TEXT = 9, MESH = 10, TRIANGLES = 11;
+const DELETE = 2, DELETE_ALL = 3;
+const MOST_MARKERS = 5000;
+
+interface Kept {
+  readonly marker: Marker;
+  /** Time of the page at which its lifetime ends. */
+  readonly untilMs: number;
+}
+
+export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
+  readonly #markers = new Map<string, Kept>();
+  readonly #meshes = new MeshStore(this.around.connection, () => this.restyle());
+
+  protected override take(value: Marker | { markers: Marker[] }): void {
+    for (const marker of "markers" in value ? value.markers : [value]) this.#apply(marker);
+  }
+
+  override clear(): void {
+    this.#markers.clear();
+    super.clear();
+  }
+
+  #apply(marker: Marker): void {
+    const key = `${marker.ns}/${marker.id}`;
+    if (marker.action === DELETE_ALL) this.#markers.clear();
+    else if (marker.action === DELETE) this.#markers.delete(key);
+    else {
+      const lifetimeMs = marker.lifetime.sec * 1000 + marker.lifetime.nanosec / 1e6;
+      this.#markers.set(key, { marker, untilMs: lifetimeMs > 0 ? performance.now() + lifetimeMs : Infinity });
+      if (this.#markers.size > MOST_MARKERS) this.#markers.delete(this.#markers.keys().next().value ?? "");
+    }
+  }
+
+  protected override build(): Part[] {
+    const now = performance.now();
+    const byFrame = new Map<string, { primitives: Primitive[]; names: Map<Primitive, string> }>();
+    for (const [key, { marker, untilMs }] of this.#markers) {
+      if (untilMs < now) {
+        this.#markers.delete(key);
+        continue;
+      }
+      const frame = marker.header.frame_id;
+      const group = byFrame.get(frame) ?? { primitives: [], names: new Map<Primitive, string>() };
+      byFrame.set(frame, group);
+      for (const primitive of this.#primitives(marker)) {
+        group.primitives.push(primitive);
+        group.names.set(primitive, key);
+      }
+    }
+    if ([...this.#markers.values()].some(({ untilMs }) => untilMs < Infinity)) {
+      setTimeout(() => nextFrame(() => this.restyle()), 250); // their lifetime ends without a message
+    }
+    return [...byFrame].map(([frame, { primitives, names }]) => ({
+      frame,
+      primitives,
+      about: (primitive) => [["marker", names.get(primitive) ?? ""]],
+    }));
+  }
+
+  #primitives(marker: Marker): Primitive[] {
+    const { scale, color, points } = marker;
+    const pose = transformOf(marker.pose);
+    const colour = colourOf(color.r, color.g, color.b, color.a);
+    const size = [scale.x, scale.y, scale.z] as const;
+    switch (marker.type) {
+      case ARROW:
+        return [arrow(marker, colour)];
+      case CUBE:
+        return [{ kind: "solid", shape: "box", pose, size, colour }];
+      case SPHERE:
+        return [{ kind: "solid", shape: "sphere", pose, size, colour }];
+      case CYLINDER:
+        return [{ kind: "solid", shape: "cylinder", pose, size, colour }];
+      case LINE_STRIP:
+      case LINE_LIST: {
+        const positions = placed(marker);
+        const mode = marker.type === LINE_STRIP ? "strip" : "segments";
+        return points.length > 1 ? [{ kind: "lines", positions, mode, colour, widthPx: 2 }] : [];
+      }
+      case CUBE_LIST:
+      case SPHERE_LIST:
+      case POINTS: {
+        const each = marker.colors.length === points.length ? { colours: coloursOf(marker) } : {};
+        return points.length > 0 ? [{ kind: "points", positions: placed(marker), ...each, colour, sizePx: 4 }] : [];
+      }
+      case TEXT:
+        return [{ kind: "label", position: pose.translation, text: marker.text.slice(0, 200), colour, sizePx: 12 }];
+      case MESH: {
+        const mesh = this.#meshes.get(marker.mesh_resource);
+        return mesh ? [{ kind: "solid", shape: "mesh", pose, size, colour, mesh }] : [];
+      }
+      case TRIANGLES: {
+        const positions = Float32Array.from(points.flatMap(({ x, y, z }) => [x, y, z]));
+        return [{ kind: "solid", shape: "mesh", pose, size, colour, mesh: { positions } }];
+      }
+      default:
+        return [];
+    }
+  }
+
+  protected override detail(): string {
+    return this.#markers.size === 1 ? "1 marker" : `${this.#markers.size} markers`;
+  }
+}
+
+/** From its pose along x, or from its first point to its second. */
+function arrow(marker: Marker, colour: Colour): Primitive {
+  const pose = transformOf(marker.pose);
+  const [from, to] = marker.points;
+  if (from && to) return { kind: "lines", positions: placed(marker), mode: "strip", colour, widthPx: 3 };
+  return { kind: "solid", shape: "box", pose: shifted(pose, marker.scale.x / 2), size: [marker.scale.x, marker.scale.y, marker.scale.z], colour };
+}
+
+function shifted(pose: ReturnType<typeof transformOf>, forwardM: number): ReturnType<typeof transformOf> {
+  const [x, y, z] = pose.translation;
+  const [qx, qy, qz, qw] = pose.rotation;
+  return {
+    translation: [
+      x + forwardM * (1 - 2 * (qy * qy + qz * qz)),
+      y + forwardM * 2 * (qx * qy + qz * qw),
+      z + forwardM * 2 * (qx * qz - qy * qw),
+    ],
+    rotation: pose.rotation,
+  };
+}
+
+/** The marker's points in the frame of its header. */
+function placed(marker: Marker): Float32Array {
+  const { translation: [tx, ty, tz], rotation: [qx, qy, qz, qw] } = transformOf(marker.pose);
+  const positions = new Float32Array(3 * marker.points.length);
+  marker.points.forEach(({ x, y, z }, index) => {
+    const [ax, ay, az] = [2 * (qy * z - qz * y), 2 * (qz * x - qx * z), 2 * (qx * y - qy * x)];
+    positions[3 * index] = tx + x + qw * ax + qy * az - qz * ay;
+    positions[3 * index + 1] = ty + y + qw * ay + qz * ax - qx * az;
+    positions[3 * index + 2] = tz + z + qw * az + qx * ay - qy * ax;
+  });
+  return positions;
+}
+
+function coloursOf({ colors }: Marker): Uint8Array {
+  return Uint8Array.from(colors.flatMap(({ r, g, b }) => [255 * r, 255 * g, 255 * b]));
+}

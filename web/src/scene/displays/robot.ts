@@ -1,0 +1,233 @@
+/** What the page computes from the robot's motion: footprint, trail, contacts; the frames; the grid; the goal. */
+
+import { Display } from "../display";
+import { transformOf, valuesOf, type DiagnosticStatus, type Odometry } from "../messages";
+import { faded, type Part, type Primitive } from "../primitives";
+import { IDENTITY, yawOf, type Transform } from "../../transforms/transform";
+import { covarianceEllipse } from "./poses";
+
+const APART_M = 0.05;
+const JUMP_M = 2;
+const MOST_POINTS = 20_000;
+
+/** nav_msgs/Odometry: the driven path, the newest pose, its covariance. */
+export class OdometryDisplay extends Display<Odometry> {
+  readonly #trail: number[] = [];
+  #frame = "";
+
+  protected override take(value: Odometry): void {
+    this.message = value;
+    if (value.header.frame_id !== this.#frame) this.#trail.length = 0;
+    this.#frame = value.header.frame_id;
+    const { x, y, z } = value.pose.pose.position;
+    const [lx, ly] = this.#trail.slice(-3);
+    const apart = lx === undefined || ly === undefined ? Infinity : Math.hypot(x - lx, y - ly);
+    if (apart > JUMP_M) this.#trail.length = 0; // another run
+    if (apart > APART_M) this.#trail.push(x, y, z);
+    if (this.#trail.length > 3 * MOST_POINTS) this.#trail.splice(0, 3 * 1000);
+  }
+
+  override clear(): void {
+    this.#trail.length = 0;
+    super.clear();
+  }
+
+  protected override build(): Part[] {
+    if (!this.message) return [];
+    const primitives: Primitive[] = [];
+    const { pose, covariance } = this.message.pose;
+    if (this.#trail.length > 3) {
+      const positions = Float32Array.from(this.#trail);
+      primitives.push({ kind: "lines", positions, mode: "strip", colour: this.colour, widthPx: this.size });
+    }
+    const ellipse = covarianceEllipse(covariance, transformOf(pose));
+    if (ellipse) primitives.push({ kind: "lines", positions: ellipse, mode: "loop", colour: this.colour, widthPx: 1, fill: faded(this.colour, 0.12) });
+    return [{ frame: this.#frame, primitives, about: () => this.#about() }];
+  }
+
+  #about(): [string, string][] {
+    const { linear, angular } = this.message?.twist.twist ?? { linear: { x: 0, y: 0 }, angular: { z: 0 } };
+    return [["speed", `${linear.x.toFixed(2)} m/s`], ["turn rate", `${angular.z.toFixed(2)} rad/s`]];
+  }
+
+  protected override isEmpty(): boolean {
+    return !this.message;
+  }
+
+  protected override detail(): string {
+    const { x, y } = this.message?.pose.pose.position ?? { x: 0, y: 0 };
+    return `at ${x.toFixed(2)}, ${y.toFixed(2)} m`;
+  }
+}
+
+/** The footprint at the base frame, with its heading. */
+export class RobotDisplay extends Display {
+  /** Corners in the base frame: x, y, x, y …; of the parameter footprint_m. */
+  outline: readonly number[] = [];
+  frame: string | null = null;
+
+  protected override build(): Part[] {
+    if (this.frame === null) return [];
+    const pose = IDENTITY;
+    if (this.outline.length < 6) return [{ frame: this.frame, primitives: [{ kind: "sign", shape: "arrow", pose, sizePx: 18, colour: this.colour }] }];
+    const corners: number[] = [];
+    let nose = 0;
+    for (let index = 0; index + 1 < this.outline.length; index += 2) {
+      corners.push(this.outline[index]!, this.outline[index + 1]!, 0);
+      nose = Math.max(nose, this.outline[index]!);
+    }
+    const arrow = [0.8 * nose, 0, 0, 0.3 * nose, 0.22 * nose, 0, 0.3 * nose, -0.22 * nose, 0];
+    return [{
+      frame: this.frame,
+      primitives: [
+        { kind: "lines", positions: Float32Array.from(corners), mode: "loop", colour: this.colour, widthPx: 2, fill: this.around.theme.colour("body") },
+        { kind: "lines", positions: Float32Array.from(arrow), mode: "loop", colour: this.colour, widthPx: 1, fill: this.colour },
+      ],
+    }];
+  }
+
+  override status(): ReturnType<Display["status"]> {
+    return this.frame === null && this.isVisible ? { level: "empty", text: "no odometry yet" } : super.status();
+  }
+
+  protected override detail(): string {
+    return this.outline.length < 6 ? "footprint not known" : `${this.outline.length / 2} corners`;
+  }
+}
+
+interface Contact { readonly frame: string; readonly place: Transform; readonly text: string }
+
+/** diagnostic_msgs/DiagnosticStatus on /contacts: a mark where the robot was, or where it touched. */
+export class ContactsDisplay extends Display<DiagnosticStatus> {
+  /** Where the base is, in a fixed frame. */
+  whereBase: () => { frame: string; pose: Transform } | null = () => null;
+  readonly #contacts: Contact[] = [];
+
+  protected override take(value: DiagnosticStatus): void {
+    const facts = valuesOf(value);
+    const [x, y] = [Number(facts["x_m"] ?? NaN), Number(facts["y_m"] ?? NaN)];
+    const base = this.whereBase();
+    if (!base) return;
+    const place = Number.isFinite(x) && Number.isFinite(y) ? { ...IDENTITY, translation: [x, y, 0] as const } : base.pose;
+    this.#contacts.push({ frame: facts["frame"] ?? base.frame, place, text: value.message });
+    if (this.#contacts.length > 500) this.#contacts.shift();
+  }
+
+  override clear(): void {
+    this.#contacts.length = 0;
+    super.clear();
+  }
+
+  protected override build(): Part[] {
+    const frames = new Set(this.#contacts.map(({ frame }) => frame));
+    return [...frames].map((frame) => {
+      const here = this.#contacts.filter((contact) => contact.frame === frame);
+      const signs = here.map(({ place }) => ({ kind: "sign", shape: "cross", pose: place, sizePx: this.size, colour: this.colour }) as const);
+      return { frame, primitives: signs, about: (primitive) => [["contact", here[signs.indexOf(primitive as never)]?.text ?? ""]] };
+    });
+  }
+
+  override status(): ReturnType<Display["status"]> {
+    const status = super.status();
+    return status.text === "no messages yet" ? { level: "ok", text: "no contacts" } : status;
+  }
+
+  protected override detail(): string {
+    return this.#contacts.length === 1 ? "1 contact" : `${this.#contacts.length} contacts`;
+  }
+}
+
+/** Axes and names of all frames that connect to the fixed one. */
+export class FramesDisplay extends Display {
+  protected override build(): Part[] {
+    const { transforms, fixedFrame, theme } = this.around;
+    const axes = [["bad", [1, 0, 0]], ["good", [0, 1, 0]], ["sea", [0, 0, 1]]] as const;
+    const length = this.size;
+    return transforms.frames
+      .filter((frame) => fixedFrame !== null && transforms.lookUp(fixedFrame, frame) !== null)
+      .map((frame) => {
+        const lines = axes.map(([name, [x, y, z]]) => ({
+          kind: "lines", positions: Float32Array.from([0, 0, 0, length * x, length * y, length * z]),
+          mode: "segments", colour: theme.colour(name), widthPx: 2,
+        }) as const);
+        const parent = transforms.links.get(frame)?.parent;
+        const label = { kind: "label", position: [0, 0, 0], text: frame, colour: theme.colour("quiet"), sizePx: 11 } as const;
+        return { frame, primitives: [...lines, label], about: () => [["frame", frame], ["parent", parent ?? "none"]] };
+      });
+  }
+
+  protected override isEmpty(): boolean {
+    return this.around.transforms.frames.length === 0;
+  }
+
+  protected override detail(): string {
+    return this.isEmpty() ? "no transforms yet" : `${this.around.transforms.frames.length} frames`;
+  }
+}
+
+/** The goal that the robot drives to, from any node, and waypoints after it. */
+export class GoalDisplay extends Display {
+  #goals: readonly { frame: string; pose: Transform; hasHeading: boolean }[] = [];
+
+  set(goals: readonly { frame: string; pose: Transform; hasHeading: boolean }[]): void {
+    if (JSON.stringify(goals) === JSON.stringify(this.#goals)) return;
+    this.#goals = goals;
+    this.restyle();
+  }
+
+  get goals(): readonly { frame: string; pose: Transform }[] {
+    return this.#goals;
+  }
+
+  protected override build(): Part[] {
+    return this.#goals.map(({ frame, pose, hasHeading }) => {
+      const sign = { kind: "sign", shape: "goal", pose, sizePx: this.size, colour: this.colour } as const;
+      const arrow = { kind: "sign", shape: "arrow", pose, sizePx: 1.6 * this.size, colour: this.colour } as const;
+      const [x, y] = pose.translation;
+      const heading = hasHeading ? [["heading", `${((yawOf(pose.rotation) * 180) / Math.PI).toFixed(0)}°`] as const] : [];
+      return {
+        frame,
+        primitives: hasHeading ? [sign, arrow] : [sign],
+        about: () => [["position", `${x.toFixed(2)}, ${y.toFixed(2)} m`], ...heading],
+      };
+    });
+  }
+
+  override status(): ReturnType<Display["status"]> {
+    const status = super.status();
+    return status.level === "empty" ? { level: "ok", text: "no goal" } : status;
+  }
+}
+
+/** Lines every metre, or as far apart as the zoom allows. */
+export class GroundGridDisplay extends Display {
+  /** left, low, right, high of what is visible, and metres per pixel. */
+  view: readonly [number, number, number, number, number] = [-10, -10, 10, 10, 0.02];
+
+  show(view: readonly [number, number, number, number, number]): void {
+    if (view.every((value, index) => value === this.view[index])) return;
+    this.view = view;
+    this.restyle();
+  }
+
+  /** Metres between two lines. */
+  get stepM(): number {
+    const metresPerPx = this.view[4];
+    return [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((metres) => metres > 45 * metresPerPx) ?? 200;
+  }
+
+  protected override build(): Part[] {
+    const frame = this.around.fixedFrame;
+    if (frame === null) return [];
+    const [left, low, right, high] = this.view;
+    const step = this.stepM;
+    const positions: number[] = [];
+    for (let x = Math.ceil(left / step) * step; x <= right; x += step) positions.push(x, low, 0, x, high, 0);
+    for (let y = Math.ceil(low / step) * step; y <= high; y += step) positions.push(left, y, 0, right, y, 0);
+    return [{ frame, primitives: [{ kind: "lines", positions: Float32Array.from(positions), mode: "segments", colour: this.colour, widthPx: 1 }] }];
+  }
+
+  protected override detail(): string {
+    return `${this.stepM} m`;
+  }
+}

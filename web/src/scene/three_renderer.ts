@@ -1,0 +1,315 @@
+/** Draws the scene in 3D with three.js; loaded when 3D is first wanted. */
+
+import {
+  AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, DataTexture,
+  DirectionalLight, DoubleSide, Group, Line, LineBasicMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, NearestFilter, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Scene, ShapeUtils,
+  SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
+  type Material, type Object3D, type Texture,
+} from "three";
+import type { Transform } from "../transforms/transform";
+import { rgba, type Colour, type Label, type Lines, type Points as PointSet, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
+import type { DrawItem, Ray, Renderer, Viewpoint } from "./renderer";
+
+const FIELD_DEG = 45;
+/** Slightly above what was drawn before, so that flat things do not flicker through each other. */
+const LAYER_M = 0.002;
+/** Pixels per metre at which signs have their size; they scale with the view. */
+const MOST_RATIO = 1.5;
+
+/** An object of three.js and what is freed with it. */
+interface Built {
+  readonly object: Object3D;
+  readonly materials: Material[];
+  /** A sign keeps its size on the screen: pixels, or 0. */
+  readonly sizePx: number;
+}
+
+export class ThreeRenderer implements Renderer {
+  readonly #gl: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(FIELD_DEG, 1, 0.1, 2000);
+  readonly #built = new Map<Primitive, Built>();
+  #width = 0;
+  #height = 0;
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    invalidate: () => void,
+  ) {
+    this.#gl = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.#camera.up.set(0, 0, 1);
+    this.#scene.add(new AmbientLight(0xffffff, 2));
+    const sun = new DirectionalLight(0xffffff, 1.8);
+    sun.position.set(0.5, -0.8, 1.6);
+    this.#scene.add(sun);
+    canvas.addEventListener("webglcontextrestored", invalidate);
+  }
+
+  draw(items: readonly DrawItem[], viewpoint: Viewpoint, background: string): void {
+    this.#fit();
+    this.#place(viewpoint);
+    this.#scene.background = colourOf(background);
+    const used = new Set<Primitive>();
+    const perPx = 1 / viewpoint.scale;
+    items.forEach(({ part, fixed_T_part, opacity }, order) => {
+      for (const primitive of part.primitives) {
+        if (used.has(primitive)) continue;
+        used.add(primitive);
+        const built = this.#objectOf(primitive);
+        if (!built) continue;
+        moveTo(built.object, fixed_T_part, LAYER_M * order * Math.min(1, 20 * perPx));
+        built.object.renderOrder = order;
+        if (built.sizePx > 0) built.object.children[0]?.scale.setScalar(built.sizePx * perPx);
+        for (const material of built.materials) fade(material, opacity);
+      }
+    });
+    for (const [primitive, built] of this.#built) {
+      if (used.has(primitive)) continue;
+      this.#scene.remove(built.object);
+      free(built);
+      this.#built.delete(primitive);
+    }
+    this.#gl.render(this.#scene, this.#camera);
+  }
+
+  ray(viewpoint: Viewpoint, px: number, py: number): Ray {
+    this.#fit();
+    this.#place(viewpoint);
+    const { x, y, z } = this.#camera.position;
+    const far = new Vector3((2 * px) / this.#width - 1, 1 - (2 * py) / this.#height, 0.5).unproject(this.#camera);
+    const direction = far.sub(this.#camera.position).normalize();
+    return { origin: [x, y, z], direction: [direction.x, direction.y, direction.z], metresPerPx: 1 / viewpoint.scale };
+  }
+
+  project(viewpoint: Viewpoint, point: readonly [number, number, number]): [number, number] | null {
+    this.#place(viewpoint);
+    const place = new Vector3(...point).project(this.#camera);
+    return place.z > 1 ? null : [((place.x + 1) / 2) * this.#width, ((1 - place.y) / 2) * this.#height];
+  }
+
+  dispose(): void {
+    for (const built of this.#built.values()) free(built);
+    this.#built.clear();
+    this.#gl.dispose();
+    this.#gl.forceContextLoss();
+  }
+
+  #fit(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === this.#width && height === this.#height) return;
+    [this.#width, this.#height] = [Math.max(1, width), Math.max(1, height)];
+    this.#gl.setPixelRatio(Math.min(devicePixelRatio || 1, MOST_RATIO));
+    this.#gl.setSize(this.#width, this.#height, false);
+    this.#camera.aspect = this.#width / this.#height;
+    this.#camera.updateProjectionMatrix();
+  }
+
+  /** As far away that the middle has the scale of the viewpoint. */
+  #place({ centre: [x, y], scale, azimuth, elevation }: Viewpoint): void {
+    const far = this.#height / scale / (2 * Math.tan((FIELD_DEG * Math.PI) / 360));
+    const flat = far * Math.cos(elevation);
+    this.#camera.position.set(x + flat * Math.cos(azimuth), y + flat * Math.sin(azimuth), far * Math.sin(elevation));
+    this.#camera.near = Math.max(0.05, far / 200);
+    this.#camera.far = far * 40;
+    this.#camera.lookAt(x, y, 0);
+    this.#camera.updateProjectionMatrix();
+    this.#camera.updateMatrixWorld();
+  }
+
+  #objectOf(primitive: Primitive): Built | null {
+    const known = this.#built.get(primitive);
+    if (known) return known;
+    const built = build(primitive);
+    if (!built) return null;
+    this.#built.set(primitive, built);
+    this.#scene.add(built.object);
+    return built;
+  }
+}
+
+function build(primitive: Primitive): Built | null {
+  switch (primitive.kind) {
+    case "raster":
+      return rasterOf(primitive);
+    case "points":
+      return pointsOf(primitive);
+    case "lines":
+      return linesOf(primitive);
+    case "solid":
+      return solidOf(primitive);
+    case "sign":
+      return signOf(primitive);
+    case "label":
+      return labelOf(primitive);
+  }
+}
+
+/** An object whose own pose is that of its frame; `inner` is placed within. */
+function wrap(inner: Object3D, pose: Transform | null, materials: Material[], sizePx = 0): Built {
+  const object = new Group();
+  if (pose) moveTo(inner, pose, 0);
+  object.add(inner);
+  return { object, materials, sizePx };
+}
+
+function rasterOf({ pose, widthM, heightM, columns, rows, pixels }: Raster): Built {
+  const texture = new DataTexture(new Uint8Array(pixels.buffer), columns, rows);
+  texture.colorSpace = SRGBColorSpace;
+  texture.magFilter = texture.minFilter = NearestFilter;
+  texture.needsUpdate = true;
+  const material = flat({ map: texture });
+  const geometry = new PlaneGeometry(widthM, heightM).translate(widthM / 2, heightM / 2, 0);
+  return wrap(new Mesh(geometry, material), pose, [material]);
+}
+
+function pointsOf({ positions, colours, colour, sizePx }: PointSet): Built {
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
+  const material = new PointsMaterial({ size: sizePx, sizeAttenuation: false });
+  if (colours) {
+    const linear = new Float32Array(colours.length);
+    const table = LINEAR;
+    for (let index = 0; index < colours.length; index++) linear[index] = table[colours[index]!]!;
+    geometry.setAttribute("color", new BufferAttribute(linear, 3));
+    material.vertexColors = true;
+  } else paint(material, colour);
+  return wrap(new Points(geometry, material), null, [material]);
+}
+
+/** sRGB bytes as linear light. */
+const LINEAR = Float32Array.from({ length: 256 }, (_, byte) => new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r);
+
+function linesOf({ positions, mode, colour, fill }: Lines): Built {
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
+  const material = new LineBasicMaterial();
+  paint(material, colour);
+  const Kind = { strip: Line, loop: LineLoop, segments: LineSegments }[mode];
+  const group = new Group();
+  group.add(new Kind(geometry, material));
+  const materials: Material[] = [material];
+  if (fill) {
+    const inner = flat({ side: DoubleSide });
+    paint(inner, fill);
+    const area = areaOf(positions);
+    group.add(new Mesh(area, inner));
+    materials.push(inner);
+  }
+  return wrap(group, null, materials);
+}
+
+/** Triangles of the polygon that the points enclose. */
+function areaOf(positions: Float32Array): BufferGeometry {
+  const corners: Vector2[] = [];
+  for (let at = 0; at + 2 < positions.length; at += 3) corners.push(new Vector2(positions[at], positions[at + 1]));
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setIndex(ShapeUtils.triangulateShape(corners, []).flat());
+  return geometry;
+}
+
+function solidOf({ shape, pose, size, colour, mesh }: Solid): Built {
+  const material = new MeshLambertMaterial();
+  paint(material, colour);
+  let geometry: BufferGeometry;
+  if (shape === "box") geometry = new BoxGeometry(1, 1, 1);
+  else if (shape === "sphere") geometry = new SphereGeometry(0.5, 20, 14);
+  else if (shape === "cylinder") geometry = new CylinderGeometry(0.5, 0.5, 1, 24).rotateX(Math.PI / 2);
+  else {
+    geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(mesh?.positions ?? new Float32Array(0), 3));
+    geometry.computeVertexNormals();
+    material.side = DoubleSide;
+  }
+  const body = new Mesh(geometry, material);
+  body.scale.set(...size);
+  return wrap(body, pose, [material]);
+}
+
+function signOf({ shape, pose, sizePx, colour }: Sign): Built {
+  const material = flat({ side: DoubleSide, depthTest: false });
+  paint(material, colour);
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(Float32Array.from(outlineOf(shape)), 3));
+  return wrap(new Mesh(geometry, material), pose, [material], sizePx);
+}
+
+/** Triangles of a sign of size one, flat on the ground. */
+function outlineOf(shape: Sign["shape"]): number[] {
+  if (shape === "arrow") return [...quad(0, 0, 1, 0, 0.13), 1.02, 0, 0, 0.6, 0.3, 0, 0.6, -0.3, 0];
+  if (shape === "cross") return [...quad(-0.5, -0.5, 0.5, 0.5, 0.18), ...quad(-0.5, 0.5, 0.5, -0.5, 0.18)];
+  const disc = (outer: number, inner: number): number[] => {
+    const numbers: number[] = [];
+    for (let step = 0; step < 24; step++) {
+      const [a, b] = [(2 * Math.PI * step) / 24, (2 * Math.PI * (step + 1)) / 24];
+      const at = (radius: number, angle: number): number[] => [radius * Math.cos(angle), radius * Math.sin(angle), 0];
+      numbers.push(...at(outer, a), ...at(outer, b), ...at(inner, b), ...at(outer, a), ...at(inner, b), ...at(inner, a));
+    }
+    return numbers;
+  };
+  if (shape === "dot") return disc(0.5, 0);
+  return shape === "ring" ? disc(0.5, 0.36) : [...disc(0.5, 0.36), ...disc(0.17, 0)];
+}
+
+/** A line of some width as two triangles. */
+function quad(ax: number, ay: number, bx: number, by: number, width: number): number[] {
+  const length = Math.hypot(bx - ax, by - ay);
+  const [nx, ny] = [(-(by - ay) / length) * (width / 2), ((bx - ax) / length) * (width / 2)];
+  const [a, b, c, d] = [[ax + nx, ay + ny, 0], [ax - nx, ay - ny, 0], [bx - nx, by - ny, 0], [bx + nx, by + ny, 0]];
+  return [...a, ...b, ...c, ...a, ...c, ...d];
+}
+
+function labelOf({ position: [x, y, z], text, colour, sizePx }: Label): Built {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d");
+  const font = `600 ${2 * sizePx}px system-ui, sans-serif`;
+  if (context) {
+    context.font = font;
+    canvas.width = Math.ceil(context.measureText(text).width) + 8;
+    canvas.height = 3 * sizePx;
+    context.font = font; // a new size resets it
+    context.fillStyle = colour;
+    context.textBaseline = "middle";
+    context.fillText(text, 4, canvas.height / 2);
+  }
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  const material = new SpriteMaterial({ map: texture, depthTest: false, transparent: true });
+  const sprite = new Sprite(material);
+  sprite.center.set(0.5, -0.1);
+  sprite.scale.set(canvas.width / canvas.height, 1, 1);
+  const holder = new Group();
+  holder.add(sprite);
+  return wrap(holder, { translation: [x, y, z], rotation: [0, 0, 0, 1] }, [material], 1.5 * sizePx);
+}
+
+function flat(options: ConstructorParameters<typeof MeshBasicMaterial>[0]): MeshBasicMaterial {
+  return new MeshBasicMaterial({ transparent: true, depthWrite: false, ...options });
+}
+
+function colourOf(colour: Colour): Color {
+  const [r, g, b] = rgba(colour);
+  return new Color().setRGB(r / 255, g / 255, b / 255, SRGBColorSpace);
+}
+
+function paint(material: MeshBasicMaterial | MeshLambertMaterial | LineBasicMaterial | PointsMaterial, colour: Colour): void {
+  material.color.copy(colourOf(colour));
+  material.userData["opacity"] = rgba(colour)[3];
+}
+
+function fade(material: Material, opacity: number): void {
+  const total = opacity * ((material.userData["opacity"] as number | undefined) ?? 1);
+  material.opacity = total;
+  if (total < 1) material.transparent = true;
+}
+
+function moveTo(object: Object3D, { translation: [x, y, z], rotation }: Transform, lift: number): void {
+  object.position.set(x, y, z + lift);
+  object.quaternion.set(...rotation);
+}
+
+function free({ object, materials }: Built): void {
+  object.traverse((each) => {
+    if (each instanceof Mesh || each instanceof Line || each instanceof Points) (each.geometry as BufferGeometry).dispose();
+  });
+  for (const material of materials) {
+    (material as Material & { map?: Texture | null }).map?.dispose();
+    material.dispose();
+  }
+}

@@ -1,0 +1,86 @@
+/** Moves the viewpoint: pan, zoom, turn, follow the robot, fit to what is known. */
+
+import type { Dispose } from "../connection/connection";
+import type { Viewpoint } from "./renderer";
+
+const LOWEST_SCALE = 0.5;
+const HIGHEST_SCALE = 1000;
+/** Part of the picture that a fit fills. */
+const FILL = 0.86;
+
+export type Box = readonly [left: number, low: number, right: number, high: number];
+
+export class Viewing {
+  readonly viewpoint: Viewpoint = { centre: [0, 0], scale: 40, azimuth: -Math.PI / 2, elevation: 0.9 };
+  #follows = true;
+  readonly #listeners = new Set<() => void>();
+
+  constructor(private readonly invalidate: () => void) {}
+
+  get follows(): boolean {
+    return this.#follows;
+  }
+
+  onChange(callback: () => void): Dispose {
+    this.#listeners.add(callback);
+    return () => this.#listeners.delete(callback);
+  }
+
+  follow(follows: boolean): void {
+    if (this.#follows === follows) return;
+    this.#follows = follows;
+    this.#changed();
+  }
+
+  centreOn(x: number, y: number): void {
+    if (this.viewpoint.centre[0] === x && this.viewpoint.centre[1] === y) return;
+    this.viewpoint.centre = [x, y];
+    this.invalidate();
+  }
+
+  /** By metres of the ground. */
+  pan(dx: number, dy: number): void {
+    this.follow(false);
+    this.viewpoint.centre = [this.viewpoint.centre[0] + dx, this.viewpoint.centre[1] + dy];
+    this.#changed();
+  }
+
+  /** About a place, which stays under the pointer unless the view follows the robot. */
+  zoom(factor: number, about: readonly [number, number] | null): void {
+    const { viewpoint } = this;
+    const scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, viewpoint.scale * factor));
+    const real = viewpoint.scale / scale;
+    if (about && !this.#follows) {
+      const [x, y] = viewpoint.centre;
+      viewpoint.centre = [about[0] + (x - about[0]) * real, about[1] + (y - about[1]) * real];
+    }
+    viewpoint.scale = scale;
+    this.#changed();
+  }
+
+  turn(azimuth: number, elevation: number): void {
+    this.viewpoint.azimuth += azimuth;
+    this.viewpoint.elevation = Math.min(Math.PI / 2 - 0.001, Math.max(0.05, this.viewpoint.elevation + elevation));
+    this.#changed();
+  }
+
+  fit([left, low, right, high]: Box, width: number, height: number): void {
+    this.#follows = false;
+    this.viewpoint.centre = [(left + right) / 2, (low + high) / 2];
+    const scale = FILL * Math.min(width / Math.max(right - left, 0.5), height / Math.max(high - low, 0.5));
+    this.viewpoint.scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, scale));
+    this.#changed();
+  }
+
+  #changed(): void {
+    this.invalidate();
+    for (const callback of this.#listeners) callback();
+  }
+}
+
+/** The box around boxes; null for none. */
+export function unionOf(boxes: readonly Box[]): Box | null {
+  if (boxes.length === 0) return null;
+  const part = (index: 0 | 1 | 2 | 3, choose: (...values: number[]) => number): number => choose(...boxes.map((box) => box[index]));
+  return [part(0, Math.min), part(1, Math.min), part(2, Math.max), part(3, Math.max)];
+}
