@@ -13,13 +13,16 @@ from typing import Any
 
 from navette.viewer.token_bucket import TokenBucket
 
+_CPU_WEIGHT = 3.0  # the most that a second of CPU time counts
+
 
 class ThrottledSelector(selectors.DefaultSelector):
     """Selector that sleeps while its thread has worked more than its share.
 
-    Work is CPU time of the thread, not wall time outside :meth:`select`: a thread that
-    waits for the interpreter or for a core delays no node, and an operator's command
-    behind it must not wait for the rest of a delay that others caused.
+    Work is CPU time of the thread outside :meth:`select`. On a machine that is short of
+    CPU time it counts up to three times, as the thread takes more of what the process
+    receives; but not the whole wall time: a thread that waits for the interpreter
+    delays no node, and an operator's command must not wait for a debt of others.
 
     Args:
         share: seconds of work per second.
@@ -39,17 +42,20 @@ class ThrottledSelector(selectors.DefaultSelector):
     ) -> None:
         super().__init__()
         self._bucket = TokenBucket(share, burst_s, now_s)
-        self._cpu_s = cpu_s
+        self._now_s, self._cpu_s = now_s, cpu_s
         self._sleep = sleep or threading.Event().wait
-        self._selected_s: float | None = None  # set in the thread whose time counts
+        # Wall and CPU time; set in the thread whose time counts.
+        self._selected_s: tuple[float, float] | None = None
 
     def select(self, timeout: float | None = None) -> Any:
         if self._selected_s is not None:
-            self._bucket.take(self._cpu_s() - self._selected_s)
+            wall_s = self._now_s() - self._selected_s[0]
+            cpu_s = self._cpu_s() - self._selected_s[1]
+            self._bucket.take(min(wall_s, _CPU_WEIGHT * cpu_s))
         wait_s = self._bucket.wait_s()
         if wait_s:
             self._sleep(wait_s)
             timeout = 0.0
         events = super().select(timeout)
-        self._selected_s = self._cpu_s()
+        self._selected_s = self._now_s(), self._cpu_s()
         return events

@@ -52,8 +52,9 @@ def test_an_opening_is_a_frontier_with_a_goal_in_front_of_it() -> None:
     assert 0.9 <= y <= 1.6
     assert frontier.way_m == pytest.approx(x - 1.25)
     assert 0.0 < found.open_share < 0.5
-    assert is_open(cells, spec, frontier.middle, 0.6)
-    assert not is_open(cells, spec, (1.25, 1.25), 0.6)
+    assert is_open(cells, spec, frontier, PARAMS)
+    cells[1:4, 9] = 0
+    assert not is_open(cells, spec, frontier, PARAMS)
 
 
 def test_the_way_leads_around_walls_and_the_nearer_frontier_is_first() -> None:
@@ -68,7 +69,9 @@ def test_the_way_leads_around_walls_and_the_nearer_frontier_is_first() -> None:
         "#.....#...#....#",
         "#         #    #",
     )
-    found = explore(cells, spec, (4.25, 2.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
+    found = explore(
+        cells, spec, (4.25, 2.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0, 10.0)
+    )
     ways = [each.way_m for each in found.frontiers]
     assert ways == sorted(ways)
     # The room on the left is behind walls.
@@ -84,16 +87,20 @@ def test_longer_frontiers_are_worth_a_longer_way() -> None:
     cells, spec = grid("#" * 22, *lines, "#" + "." * 3 + "#" * 18)
     cells[1:4, 0] = -1  # three cells wide, near
     cells[4, 12:21] = -1  # nine cells wide, far
-    near = explore(cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
-    long = explore(cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 3.0))
+    near = explore(
+        cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0, 10.0)
+    )
+    long = explore(
+        cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 3.0, 10.0)
+    )
     assert near.frontiers[0].length_m < long.frontiers[0].length_m
 
 
-def test_goals_that_failed_are_avoided() -> None:
+def test_frontiers_that_failed_are_avoided() -> None:
     cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
     (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
-    found = explore(cells, spec, (1.25, 1.25), PARAMS, [frontier.goal])
-    assert all(math.dist(f.goal, frontier.goal) > 0.7 for f in found.frontiers)
+    found = explore(cells, spec, (1.25, 1.25), PARAMS, [frontier.middle])
+    assert (found.frontiers, found.unreachable) == ((), 1)
 
 
 def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:
@@ -101,3 +108,31 @@ def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:
     assert len(explore(cells, spec, (0.75, 0.75), PARAMS).frontiers) == 1
     outside = explore(cells, spec, (-50.0, 0.75), PARAMS)
     assert (outside.frontiers, outside.unreachable) == ((), 1)
+
+
+def test_a_frontier_is_seen_from_its_own_side_of_a_wall() -> None:
+    """The nearest free cell as the crow flies may be behind the wall."""
+    cells, spec = grid(
+        "################",
+        "#.............##",
+        "#.............##",
+        "#.............##",
+        "##########....##",
+        "          .....#",
+        "          .....#",
+        "          .....#",
+        "################",
+    )
+    found = explore(cells, spec, (1.25, 2.75), PARAMS)
+    frontier = min(found.frontiers, key=lambda each: each.middle[1])
+    assert frontier.goal[0] > 5.0
+    assert frontier.goal[1] < 2.0
+
+
+def test_a_long_frontier_is_divided() -> None:
+    lines = ["#" + "." * 30 + "#"] * 3
+    cells, spec = grid("#" * 32, *lines, " " * 32)
+    found = explore(cells, spec, (1.25, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
+    assert len(found.frontiers) == 4
+    assert sum(each.length_m for each in found.frontiers) == pytest.approx(15.0)
+    assert all(abs(each.goal[0] - each.middle[0]) < 1.1 for each in found.frontiers)

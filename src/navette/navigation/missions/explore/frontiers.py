@@ -7,6 +7,7 @@ frontier whose length, as a measure of what may be seen there, is worth the dist
 robot).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,10 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.navigation.grids import UNKNOWN, GridSpec, distance_field
+from navette.navigation.missions.explore.waves import (
+    UNREACHED,
+    CellIndices,
+    Mask,
+    connected_sets,
+    first_that_sees,
+    steps_from,
+    steps_to,
+)
 
 Cells = NDArray[np.int8]
-Mask = NDArray[np.bool_]
-_UNREACHED = np.iinfo(np.int32).max
+_WALL_M = 0.1
+"""Cells as near to an obstacle belong to it: thickness and noise of walls."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +38,8 @@ class FrontierParams:
         clearance_m: distance of a goal from obstacles.
         lethal_cost: map cost from which a cell is an obstacle.
         min_length_m: shorter frontiers are ignored: noise between cells.
-        viewpoint_m: largest distance from a frontier to its goal.
+        max_length_m: longer frontiers are divided.
+        viewpoint_m: largest distance from a frontier to its goal, along free cells.
         gain: metres of way that a metre of frontier is worth.
     """
 
@@ -37,6 +48,7 @@ class FrontierParams:
     min_length_m: float = 0.6
     viewpoint_m: float = 2.0
     gain: float = 1.0
+    max_length_m: float = 4.0
 
 
 @dataclass(frozen=True)
@@ -84,29 +96,29 @@ def explore(
         cells: (H, W) occupancy, -1 unknown, 0 free to 100 occupied.
         spec: geometry of the grid.
         robot: position of the robot, m, map.
-        avoid: points (m, map) whose surroundings, ``viewpoint_m`` / 2, are left out:
-            goals that failed.
+        avoid: middles (m, map) of frontiers that are left out.
     """
-    occupied = cells >= params.lethal_cost
-    free = (cells >= 0) & ~occupied
-    open_edge = free & _beside(cells == UNKNOWN)
+    free, occupied, away = _layers(cells, spec.resolution, params)
+    open_edge = _open_edge(cells, free, away)
     closed_edge = free & _beside(occupied) & ~open_edge
     open_cells, closed_cells = 0, int(closed_edge.sum())
-    away = distance_field(
-        occupied.astype(np.uint8), spec.resolution, params.clearance_m + spec.resolution
-    )
     drivable = free & (away >= params.clearance_m)
-    steps = _steps_from(drivable, free, spec.cell_of(*robot))
+    # A start within the clearance of an obstacle leaves it through free cells.
+    steps = steps_from(spec.cell_of(*robot), free, drivable)
+    longest = max(1, round(params.max_length_m / spec.resolution))
     found, unreachable = [], 0
-    for cluster in _clusters(open_edge):
+    for cluster in connected_sets(open_edge):
         if len(cluster) * spec.resolution < params.min_length_m:
             continue
         open_cells += len(cluster)
-        frontier = _viewpoint(cluster, steps, spec, params, avoid)
-        if frontier is None:
-            unreachable += 1
-        else:
-            found.append(frontier)
+        for piece in _pieces(cluster, longest):
+            frontier = _viewpoint(piece, free, occupied, steps, spec, params)
+            if frontier is not None and _is_near(frontier.middle, avoid, params):
+                frontier = None
+            if frontier is None:
+                unreachable += 1
+            else:
+                found.append(frontier)
     found.sort(key=lambda each: (each.way_m - params.gain * each.length_m, each.goal))
     cell_m2 = spec.resolution**2
     total = open_cells + closed_cells
@@ -120,17 +132,50 @@ def explore(
 
 
 def is_open(
-    cells: Cells, spec: GridSpec, point: tuple[float, float], radius_m: float,
-    lethal_cost: int = 100,
-) -> bool:  # fmt: skip
-    """Return whether a frontier is left within a radius of a point."""
-    row, column = spec.cell_of(*point)
+    cells: Cells, spec: GridSpec, frontier: Frontier, params: FrontierParams
+) -> bool:
+    """Return whether a good part of a frontier is left near to its middle."""
+    row, column = spec.cell_of(*frontier.middle)
+    radius_m = max(params.min_length_m, frontier.length_m / 4)
     reach = round(radius_m / spec.resolution) + 1
-    rows = slice(max(row - reach, 0), max(row + reach + 1, 0))
-    columns = slice(max(column - reach, 0), max(column + reach + 1, 0))
+    edge = reach + round(_WALL_M / spec.resolution) + 1  # cells whose walls count
+    rows = slice(max(row - edge, 0), max(row + edge + 1, 0))
+    columns = slice(max(column - edge, 0), max(column + edge + 1, 0))
     part = cells[rows, columns]
-    free = (part >= 0) & (part < lethal_cost)
-    return bool((free & _beside(part == UNKNOWN)).any())
+    if not part.size:
+        return False
+    free, _, away = _layers(part, spec.resolution, params)
+    left = np.argwhere(_open_edge(part, free, away))
+    middle = row - rows.start, column - columns.start
+    near = int((np.abs(left - middle).max(axis=1) <= reach).sum()) if len(left) else 0
+    return near * spec.resolution >= min(params.min_length_m, frontier.length_m) / 2
+
+
+def _layers(
+    cells: Cells, resolution: float, params: FrontierParams
+) -> tuple[Mask, Mask, NDArray[np.float32]]:
+    """Return free cells, occupied cells, and the distance to occupied ones (m)."""
+    occupied = cells >= params.lethal_cost
+    reach_m = max(params.clearance_m, _WALL_M) + resolution
+    away = distance_field(occupied.astype(np.uint8), resolution, reach_m)
+    return (cells >= 0) & ~occupied, occupied, away
+
+
+def _open_edge(cells: Cells, free: Mask, away: NDArray[np.float32]) -> Mask:
+    """Return the cells of frontiers: free, beside unknown ones, not within a wall.
+
+    A wall is a line of occupied cells with gaps; behind it are cells that are known by
+    their inflation only.
+    """
+    return free & _beside(cells == UNKNOWN) & (away > _WALL_M)
+
+
+def _is_near(
+    point: tuple[float, float],
+    avoid: Sequence[tuple[float, float]],
+    params: FrontierParams,
+) -> bool:
+    return any(math.dist(point, each) <= params.viewpoint_m / 4 for each in avoid)
 
 
 def _beside(mask: Mask) -> Mask:
@@ -143,98 +188,53 @@ def _beside(mask: Mask) -> Mask:
     return found
 
 
-def _diagonal_to(mask: Mask) -> Mask:
-    """Return the cells that have a true cell at a corner."""
-    found = np.zeros_like(mask)
-    found[1:, 1:] |= mask[:-1, :-1]
-    found[1:, :-1] |= mask[:-1, 1:]
-    found[:-1, 1:] |= mask[1:, :-1]
-    found[:-1, :-1] |= mask[1:, 1:]
-    return found
+def _pieces(cells: CellIndices, longest: int) -> list[CellIndices]:
+    """Divide a frontier until no piece is longer than ``longest`` cells a side.
 
-
-def _steps_from(
-    drivable: Mask, free: Mask, start: tuple[int, int]
-) -> NDArray[np.int32]:
-    """Return the number of steps (H, W) from a cell through drivable ones.
-
-    Steps alternate between four and eight neighbours, so that their number is near to
-    the Euclidean distance (octagonal distance). A start within the clearance of an
-    obstacle leaves it through free cells.
+    The middle of a long frontier, around a whole room for example, is no place to look
+    at it from.
     """
-    steps = np.full(drivable.shape, _UNREACHED, np.int32)
-    height, width = drivable.shape
-    if not (0 <= start[0] < height and 0 <= start[1] < width):
-        return steps
-    front = np.zeros_like(drivable)
-    front[start] = True
-    seen = front.copy()
-    count = 0
-    while front.any():
-        steps[front] = count
-        count += 1
-        grown = _beside(front)
-        if count % 2 == 0:
-            grown |= _diagonal_to(front)
-        # Only until the first drivable cell may the way lead through other free ones.
-        allowed = drivable if (seen & drivable).any() else free
-        front = grown & allowed & ~seen
-        seen |= front
-    return steps
-
-
-def _clusters(mask: Mask) -> list[NDArray[np.int64]]:
-    """Return the connected sets (eight neighbours) of true cells, as (N, 2) indices."""
-    left = {(int(r), int(c)) for r, c in np.argwhere(mask)}
-    found = []
-    while left:
-        # Row by row, so that the order depends on the map only.
-        first = min(left)
-        left.discard(first)
-        cluster, waiting = [first], [first]
-        while waiting:
-            row, column = waiting.pop()
-            for dr in (-1, 0, 1):
-                for dc in (-1, 0, 1):
-                    near = (row + dr, column + dc)
-                    if near in left:
-                        left.discard(near)
-                        cluster.append(near)
-                        waiting.append(near)
-        found.append(np.array(sorted(cluster), np.int64))
-    return found
+    extent = np.ptp(cells, axis=0)
+    axis = int(np.argmax(extent))
+    if extent[axis] < longest:
+        return [cells]
+    middle = (cells[:, axis].min() + cells[:, axis].max()) / 2
+    low = cells[:, axis] <= middle
+    return [*_pieces(cells[low], longest), *_pieces(cells[~low], longest)]
 
 
 def _viewpoint(
-    cluster: NDArray[np.int64],
+    piece: CellIndices,
+    free: Mask,
+    occupied: Mask,
     steps: NDArray[np.int32],
     spec: GridSpec,
     params: FrontierParams,
-    avoid: Sequence[tuple[float, float]],
 ) -> Frontier | None:
-    """Return the frontier with the reachable point nearest to its middle."""
-    mean = cluster.mean(axis=0)
-    middle = cluster[np.argmin(((cluster - mean) ** 2).sum(axis=1))]
+    """Return the frontier with the nearest reachable point that sees half of it.
+
+    The distance is along free cells, from the frontier and from its middle.
+    """
     reach = round(params.viewpoint_m / spec.resolution)
-    low = np.maximum(middle - reach, 0)
-    window = steps[low[0] : middle[0] + reach + 1, low[1] : middle[1] + reach + 1]
-    candidates = np.argwhere(window < _UNREACHED)
-    if not len(candidates):
+    low = np.maximum(piece.min(axis=0) - reach, 0)
+    high = piece.max(axis=0) + reach + 1
+    window = slice(low[0], high[0]), slice(low[1], high[1])
+    off = steps_to(piece - low, free[window], reach)
+    candidates = np.argwhere((steps[window] < UNREACHED) & (off < UNREACHED))
+    off = off[candidates[:, 0], candidates[:, 1]]
+    mean = piece.mean(axis=0)
+    middle = piece[np.argmin(((piece - mean) ** 2).sum(axis=1))]
+    aside = np.hypot(*(candidates + low - middle).T)
+    candidates = candidates[np.argsort(off + aside, kind="stable")]
+    best = first_that_sees(
+        candidates, piece - low, occupied[window], (len(piece) + 1) // 2
+    )
+    if best < 0:
         return None
-    candidates = candidates + low
-    off = ((candidates - middle) ** 2).sum(axis=1)
-    centers = spec.centers_of(candidates)
-    allowed = off <= reach**2
-    for x, y in avoid:
-        near = params.viewpoint_m / 2
-        allowed &= ((centers - (x, y)) ** 2).sum(axis=1) > near**2
-    if not allowed.any():
-        return None
-    best = int(np.argmin(np.where(allowed, off, np.iinfo(np.int64).max)))
-    row, column = candidates[best]
+    row, column = candidates[best] + low
     return Frontier(
-        goal=(float(centers[best, 0]), float(centers[best, 1])),
+        goal=spec.center_of(int(row), int(column)),
         middle=spec.center_of(int(middle[0]), int(middle[1])),
-        length_m=len(cluster) * spec.resolution,
+        length_m=len(piece) * spec.resolution,
         way_m=float(steps[row, column]) * spec.resolution,
     )

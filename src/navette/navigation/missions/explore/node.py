@@ -113,7 +113,10 @@ class ExplorerNode(StageNode):
         self._position: tuple[float, float] | None = None
         self._target: Frontier | None = None
         self._sent = 0
-        self._avoid: list[tuple[float, float]] = []
+        # Middles of frontiers that are not driven to: their goals failed, or were
+        # reached and showed nothing new.
+        self._failed: list[tuple[float, float]] = []
+        self._visited: list[tuple[float, float]] = []
         self._failures = 0
         self._has_retried = False
         self.create_timer(_PERIOD_S, self._check)
@@ -181,8 +184,7 @@ class ExplorerNode(StageNode):
     def _is_open(self, target: Frontier) -> bool:
         assert self._map is not None, "a target comes from a map"
         cells, spec = grid_from_message(self._map)
-        radius_m = max(self.params.min_frontier_m, target.length_m / 4)
-        return is_open(cells, spec, target.middle, radius_m, self.params.lethal_cost)
+        return is_open(cells, spec, target, self.params.frontier)
 
     def _choose(self) -> None:
         """Send the goal of the best frontier, or end."""
@@ -192,7 +194,8 @@ class ExplorerNode(StageNode):
             cells, spec = grid_from_message(self._map)
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
-        found = explore(cells, spec, self._position, self.params.frontier, self._avoid)
+        avoid = [*self._failed, *self._visited]
+        found = explore(cells, spec, self._position, self.params.frontier, avoid)
         self._note(found)
         if found.frontiers:
             self._maps_without_frontier = 0
@@ -202,9 +205,9 @@ class ExplorerNode(StageNode):
             self._end_if_sure(found)
 
     def _end_if_sure(self, found: Exploration) -> None:
-        if self._avoid and not self._has_retried:
+        if self._failed and not self._has_retried:
             # What failed may be reachable from elsewhere, or on a better map.
-            self._avoid.clear()
+            self._failed.clear()
             self._has_retried = True
             return
         self._maps_without_frontier += 1
@@ -262,11 +265,12 @@ class ExplorerNode(StageNode):
         if status == GoalStatus.STATUS_CANCELED:
             self.end(CANCELED)
             return
-        # A frontier that is still there when its goal was reached cannot be seen.
-        self._avoid.append(frontier.goal)
         if status == GoalStatus.STATUS_SUCCEEDED:
+            # A frontier that is still there when its goal was reached cannot be seen.
+            self._visited.append(frontier.middle)
             self._failures = 0
         else:
+            self._failed.append(frontier.middle)
             self._failures += 1
             self._update(failed=self.report.failed + 1)
             if self._failures >= self.params.max_failures:
