@@ -5,15 +5,12 @@ and until the robot is at rest, then none. A new goal of any behavior preempts t
 active one.
 """
 
-from collections.abc import Callable
 from typing import Any
 
-from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.msgs.sensor_msgs.msg import PointCloud2
+from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.std_msgs.msg import Empty
 from navette.navigation.behaviors.motions import MeasuredMotion
 from navette.navigation.behaviors.params import BehaviorParams
@@ -23,46 +20,19 @@ from navette.navigation.behaviors.servers.behavior_server import (
     BehaviorContext,
     BehaviorServer,
 )
-from navette.navigation.grids import CollisionCheck, ObstacleTracker
+from navette.navigation.grids import CollisionCheck
 from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.navigation.servers.motion_node import MotionNode
 from navette.runtime.stage.commander import Commander
-from navette.runtime.stage.input_period import InputPeriod
-from navette.runtime.stage.odometry import PoseTracker
-from navette.runtime.stage.stage_node import Input, Output, StageNode
+from navette.runtime.stage.stage_node import Input, Output
 
 
-class BehaviorNode(StageNode):
+class BehaviorNode(MotionNode):
     """Spin, back up, drive straight, wait, assist an operator."""
 
     PARAMS = BehaviorParams
     INPUTS = (
-        Input.of(
-            topics.ODOMETRY,
-            "pose and velocity",
-            rate_hz=10.0,
-            callback="on_odometry",
-        ),
-        Input.of(
-            topics.COSTMAP_POINTS,
-            "where the beams of the costmap with the same stamp ended",
-            callback="on_costmap_points",
-        ),
-        Input.of(
-            topics.COSTMAP,
-            "obstacles to keep clear of",
-            rate_hz=10.0,
-            callback="on_costmap",
-        ),
-        Input.of(
-            topics.MAP_POINTS,
-            "where beams ended, within the lethal cells of the map with the same stamp",
-            callback="on_map_points",
-        ),
-        Input.of(
-            topics.MAP,
-            "obstacles that the costmap does not show, such as behind the robot",
-            callback="on_map",
-        ),
+        *MotionNode.MOTION_INPUTS,
         Input.of(
             topics.CMD_VEL_TELEOP,
             "commands of the operator, for assisted_teleop",
@@ -119,33 +89,6 @@ class BehaviorNode(StageNode):
             self._located_ns = self._now_ns
             self._odometry_period.note(self._now_ns)
 
-    def on_costmap_points(self, msg: PointCloud2) -> None:
-        """Store where the beams of a costmap ended."""
-        self._use_points(self._obstacles.receive_points, msg)
-
-    def on_map_points(self, msg: PointCloud2) -> None:
-        """Store where beams ended, for the map."""
-        self._use_points(self._obstacles.remember_points, msg)
-
-    def _use_points(self, use: Callable[[PointCloud2], None], msg: PointCloud2) -> None:
-        try:
-            use(msg)
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-
-    def on_costmap(self, msg: OccupancyGrid) -> None:
-        """Store the newest costmap; it is placed while a goal is active."""
-        self._costmap_period.note(self._now_ns)
-        self._obstacles.receive(msg, self._now_ns)
-
-    def on_map(self, msg: OccupancyGrid) -> None:
-        """Store the map."""
-        frame_id, map_frame = msg.header.frame_id, self.params.map_frame
-        if frame_id != map_frame:
-            text = f"map in frame {frame_id!r}; expected map_frame, {map_frame!r}"
-            raise InvalidInputError("unknown_frame", text)
-        self._obstacles.remember(msg)
-
     def on_teleop(self, msg: Twist | TwistStamped) -> None:
         """Pass a command on to the active assisted_teleop."""
         twist = msg.twist if isinstance(msg, TwistStamped) else msg
@@ -181,19 +124,12 @@ class BehaviorNode(StageNode):
             self._send(self._active, (0.0, 0.0))
         super().destroy_node()
 
-    @property
-    def _now_ns(self) -> int:
-        return self.get_clock().now_ns
-
     def _start(self) -> None:
-        params = self.params
-        self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-        self._obstacles = ObstacleTracker(
-            self._tracker, params.body().footprint, params.blind_reverse_m
-        )
-        self._collision = CollisionCheck(params.body())
+        self._start_tracking()
+        self._collision = CollisionCheck(self.params.body())
         self._located_ns = None
-        self._odometry_period, self._costmap_period = InputPeriod(), InputPeriod()
+        self._odometry_period.reset()
+        self._costmap_period.reset()
 
     def _new_timer(self) -> Any:
         return self.create_timer(1 / self.params.rate_hz, self._tick, autostart=False)
@@ -222,22 +158,14 @@ class BehaviorNode(StageNode):
             self._timer.cancel()
 
     def _inputs(self) -> BehaviorInputs:
-        params = self.params
         self._place_obstacles()
         motion = None
-        odometry_timeout_s = self._odometry_period.timeout_s(
-            params.odometry_timeout_s, params.stale_periods
-        )
-        costmap_timeout_s = self._costmap_period.timeout_s(
-            params.costmap_timeout_s, params.stale_periods
-        )
-        if self._is_recent(self._located_ns, odometry_timeout_s):
+        if self._is_recent(self._located_ns, self._odometry_timeout_s):
             pose = self._tracker.predicted_now(self._now_ns)
             motion = pose and MeasuredMotion(
                 pose, *self._tracker.velocity, self._tracker.in_odom(pose)
             )
-        placed_ns = self._obstacles.placed_ns
-        recent = self._is_recent(placed_ns, costmap_timeout_s)
+        recent = self._is_recent(self._obstacles.placed_ns, self._costmap_timeout_s)
         return BehaviorInputs(motion, recent)
 
     def _is_recent(self, arrival_ns: int | None, timeout_s: float) -> bool:
@@ -249,15 +177,7 @@ class BehaviorNode(StageNode):
         params = self.params
         speed = max(params.max_speed_mps, abs(self._tracker.velocity[0]))
         reach_m = self._collision.reach(speed) + speed * params.simulate_ahead_s
-        try:
-            found = self._obstacles.place(
-                self._now_ns, params.lethal_cost, reach_m, reach_m
-            )
-        except InvalidValueError as error:
-            # The last valid costmap ages until the robot stops.
-            invalid = InvalidInputError("out_of_range", str(error))
-            self.drop_input(topics.COSTMAP.name, invalid)
-            return
+        found = self._placed_obstacles(reach_m, reach_m)
         if found is not None:
             self._collision.set_obstacles(*found)
 

@@ -8,7 +8,6 @@ publishes a zero.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -21,8 +20,7 @@ from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
-from navette.msgs.sensor_msgs.msg import PointCloud2
+from navette.msgs.nav_msgs.msg import Odometry, Path
 from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.explanations import (
     EXPLAINED,
@@ -46,18 +44,16 @@ from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import (
     NO_DISCS,
     MovingDiscs,
-    ObstacleTracker,
     discs_from_message,
     inside_discs,
 )
 from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.navigation.servers.motion_node import MotionNode
 from navette.params.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
-from navette.runtime.stage.input_period import InputPeriod
-from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
-from navette.runtime.stage.stage_node import Input, Output, StageNode
+from navette.runtime.stage.stage_node import Input, Output
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
 
@@ -74,7 +70,7 @@ _MOVING_MARGIN_M = 0.2
 _NO_GOAL_YET = "waiting_for_goal"
 
 
-class ControlNode(StageNode):
+class ControlNode(MotionNode):
     """Follow /path to its end; stop on stale or invalid inputs."""
 
     PARAMS = ControlParams
@@ -84,35 +80,7 @@ class ControlNode(StageNode):
             "path to follow; an empty path stops",
             callback="on_path",
         ),
-        Input.of(
-            topics.ODOMETRY,
-            "pose and velocity",
-            rate_hz=10.0,
-            timeout_s=0.14,
-            callback="on_odometry",
-        ),
-        Input.of(
-            topics.COSTMAP_POINTS,
-            "where the beams of the costmap with the same stamp ended",
-            callback="on_costmap_points",
-        ),
-        Input.of(
-            topics.COSTMAP,
-            "obstacles to keep clear of",
-            rate_hz=10.0,
-            timeout_s=0.19,
-            callback="on_costmap",
-        ),
-        Input.of(
-            topics.MAP_POINTS,
-            "where beams ended, within the lethal cells of the map with the same stamp",
-            callback="on_map_points",
-        ),
-        Input.of(
-            topics.MAP,
-            "what the costmap does not show, such as behind the robot",
-            callback="on_map",
-        ),
+        *MotionNode.MOTION_INPUTS,
         Input.of(
             topics.TRACKED_OBSTACLES,
             "moving obstacles, which are avoided where they will be",
@@ -154,12 +122,12 @@ class ControlNode(StageNode):
         ),
     )
 
+    params: ControlParams
     _zeros_left = 0  # destroy_node() may run before __init__ ends
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("control", **kwargs)
-        params: ControlParams = self.params
-        self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+        params = self.params
         self._follower = make_follower(params)
         self._speed_limits = NO_CAP
         self._path = np.empty((0, 3))
@@ -167,12 +135,10 @@ class ControlNode(StageNode):
         self._method = ""  # … which may name a steering method
         self._fault = ""  # newest of the user's method
         self._collision_action = CollisionMonitorState.DO_NOTHING
-        self._obstacles = self._new_obstacles()
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
-        self._odometry_period, self._costmap_period = InputPeriod(), InputPeriod()
         self._planner_ns = _NEVER
         self._odometry_frame = ""
         self._explained_ns: dict[ControlState, int] = {}
@@ -230,33 +196,6 @@ class ControlNode(StageNode):
         self._odometry_ns = self._now_ns
         self._odometry_frame = msg.child_frame_id
 
-    def on_costmap_points(self, msg: PointCloud2) -> None:
-        """Store where the beams of a costmap ended."""
-        self._use_points(self._obstacles.receive_points, msg)
-
-    def on_map_points(self, msg: PointCloud2) -> None:
-        """Store where beams ended, for the map."""
-        self._use_points(self._obstacles.remember_points, msg)
-
-    def _use_points(self, use: Callable[[PointCloud2], None], msg: PointCloud2) -> None:
-        try:
-            use(msg)
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-
-    def on_costmap(self, msg: OccupancyGrid) -> None:
-        """Store the newest costmap until the pose at its stamp is available."""
-        self._costmap_period.note(self._now_ns)
-        self._obstacles.receive(msg, self._now_ns)
-
-    def on_map(self, msg: OccupancyGrid) -> None:
-        """Store the map for what the costmap does not show."""
-        frame_id, map_frame = msg.header.frame_id, self.params.map_frame
-        if frame_id != map_frame:
-            text = f"map in frame {frame_id!r}; expected map_frame, {map_frame!r}"
-            raise InvalidInputError("unknown_frame", text)
-        self._obstacles.remember(msg)
-
     def on_moving(self, msg: ObstacleArray) -> None:
         """Store the moving obstacles."""
         self._moving = discs_from_message(msg, self.params.map_frame)
@@ -298,10 +237,9 @@ class ControlNode(StageNode):
 
     def on_params_changed(self, old: ControlParams) -> None:
         """Follow the same path with the new parameters."""
-        params: ControlParams = self.params
+        params = self.params
         if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
-            self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-            self._obstacles = self._new_obstacles()
+            self._start_tracking()
             self._located_ns = _NEVER
         footprint = Footprint.from_flat(params.footprint_m)
         self._obstacles.configure(footprint, params.blind_reverse_m)
@@ -336,15 +274,6 @@ class ControlNode(StageNode):
             self.publish(topics.CMD_VEL_NAV.name, Twist())
             self._zeros_left = 0
         super().destroy_node()
-
-    @property
-    def _now_ns(self) -> int:
-        return self.get_clock().now_ns
-
-    def _new_obstacles(self) -> ObstacleTracker:
-        params: ControlParams = self.params
-        footprint = Footprint.from_flat(params.footprint_m)
-        return ObstacleTracker(self._tracker, footprint, params.blind_reverse_m)
 
     def _new_follower(self, params: ControlParams) -> None:
         """Replace the follower; obstacles are placed for it before it moves."""
@@ -464,7 +393,7 @@ class ControlNode(StageNode):
         """
         stamp_ns = self._tracker.stamp_ns
         age_s = 0.0 if stamp_ns is None else (self._now_ns - stamp_ns) / 1e9
-        params: ControlParams = self.params
+        params = self.params
         return 2 * max(0.0, age_s - 1 / params.rate_hz)
 
     def _locate(self) -> None:
@@ -482,18 +411,13 @@ class ControlNode(StageNode):
             self._try_path(self._path)
 
     def _ages(self) -> InputAges:
-        params: ControlParams = self.params
         return InputAges(
             odometry_s=self._age_s(self._located_ns),
             costmap_s=self._age_s(self._placed_ns),
             # The client of a goal need not be alive: its path has an end.
             planner_s=0.0 if self._follows_goal else self._age_s(self._planner_ns),
-            odometry_timeout_s=self._odometry_period.timeout_s(
-                params.odometry_timeout_s, params.stale_periods
-            ),
-            costmap_timeout_s=self._costmap_period.timeout_s(
-                params.costmap_timeout_s, params.stale_periods
-            ),
+            odometry_timeout_s=self._odometry_timeout_s,
+            costmap_timeout_s=self._costmap_timeout_s,
         )
 
     def _age_s(self, arrival_ns: int) -> float:
@@ -505,18 +429,9 @@ class ControlNode(StageNode):
         """Convert the newest costmap to obstacles once its pose is available."""
         if not (self.params.collision_check and self._follower.has_path):
             return
-        try:
-            obstacles = self._obstacles.place(
-                self._now_ns,
-                self.params.lethal_cost,
-                self._follower.obstacle_reach_m,
-                self._follower.unseen_reach_m,
-            )
-        except InvalidValueError as error:
-            # The last valid costmap ages until the robot stops.
-            invalid = InvalidInputError("out_of_range", str(error))
-            self.drop_input(topics.COSTMAP.name, invalid)
-            return
+        obstacles = self._placed_obstacles(
+            self._follower.obstacle_reach_m, self._follower.unseen_reach_m
+        )
         if obstacles is not None and self._obstacles.placed_ns is not None:
             moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
             still = ~inside_discs(obstacles.points, moving, _MOVING_MARGIN_M)

@@ -1,1 +1,1 @@
-"""Servers that several stages offer under their own names."""
+"""What the nodes of several stages share: servers, and the base class of motion."""
