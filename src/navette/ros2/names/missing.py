@@ -15,7 +15,6 @@ _ROS_2 = {
     "launch_testing": "start programs with launch.LaunchService or subprocess in a "
     "pytest test",
     "ros2cli": "navette's commands do the same: navette --help",
-    "turtlesim": "examples/17_draw_a_square.py drives a robot like the turtle",
 }
 
 

@@ -13,28 +13,32 @@ from navette.errors import FileFormatError
 from navette.ros2.workspace.setup_py import read_setup_py
 
 BUILT_IN = "navette"
+_STAGES = (
+    "sim",
+    "odom_integrator",
+    "ekf",
+    "localizer",
+    "costmap",
+    "map_memory",
+    "tracking",
+    "planner",
+    "control",
+    "behaviors",
+    "arbiter",
+    "missions",
+    "explorer",
+    "lifecycle_manager",
+    "viewer",
+    "recorder",
+)
+_TURTLES = ("turtlesim_node", "turtle_teleop_key", "draw_square", "mimic")
+#: Package → program → module and function.
 _PROGRAMS = {
-    "component_container": ("navette.ros2.launch.container", "main"),
-} | {
-    name: ("navette.navigation.stack.stages", name)
-    for name in (
-        "sim",
-        "odom_integrator",
-        "ekf",
-        "localizer",
-        "costmap",
-        "map_memory",
-        "tracking",
-        "planner",
-        "control",
-        "behaviors",
-        "arbiter",
-        "missions",
-        "explorer",
-        "lifecycle_manager",
-        "viewer",
-        "recorder",
-    )
+    BUILT_IN: {
+        "component_container": ("navette.ros2.launch.container", "main"),
+        **{name: ("navette.navigation.stack.stages", name) for name in _STAGES},
+    },
+    "turtlesim": {name: ("navette.cli.turtlesim", name) for name in _TURTLES},
 }
 
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
@@ -55,12 +59,10 @@ class PackageExecutable:
 
 
 def built_in_executables(package: str) -> tuple[PackageExecutable, ...]:
-    """Return Navette's programs: the stages and the component container."""
-    if package != BUILT_IN:
-        return ()
+    """Return Navette's programs: the stages, the component container, turtlesim."""
     return tuple(
         PackageExecutable(package, name, module, attribute)
-        for name, (module, attribute) in sorted(_PROGRAMS.items())
+        for name, (module, attribute) in sorted(_PROGRAMS.get(package, {}).items())
     )
 
 

@@ -1,0 +1,1 @@
+"""turtlesim: the turtles of ROS 2's first tutorials."""
