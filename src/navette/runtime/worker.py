@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from navette.runtime.node import Node
 
@@ -25,7 +25,13 @@ class Worker:
         self._loop = node.context.loop
         self._name = node.get_fully_qualified_name()
         self._threads: ThreadPoolExecutor | None = None
+        self._last: Future[Any] | None = None
         self._closed = False
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a computation runs in a thread, perhaps one that was dropped."""
+        return self._last is not None and not self._last.done()
 
     def run(
         self,
@@ -45,6 +51,7 @@ class Worker:
         if self._threads is None:
             self._threads = ThreadPoolExecutor(1, thread_name_prefix=self._name)
         future = self._threads.submit(compute)
+        self._last = future
 
         def end() -> None:
             if not self._closed and not is_dropped():

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import CellWindow, GridSpec
 from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.outcome import Outcome
@@ -67,7 +67,6 @@ class Navigator:
         self._plan: Plan | None = None
         self._progress: PathProgress | None = None
         self._checker = ProgressChecker(params)
-        self._cost_seen: NDArray[np.uint8] | None = None
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
         self._stepped_ns = self._compared_ns = 0
@@ -91,19 +90,24 @@ class Navigator:
         occupancy: NDArray[np.int8],
         spec: GridSpec,
         hits: NDArray[np.float64] = NO_HITS,
+        changed: CellWindow | None = None,
     ) -> None:
         """Replace the map (H, W); the next step checks the path against it.
 
-        ``hits`` (N, 2), map frame, m: where beams ended within its lethal cells.
+        Args:
+            occupancy: the array may be that of the last call.
+            spec: its geometry.
+            hits: (N, 2), map frame, m: where beams ended within its lethal cells.
+            changed: the cells that changed since the last call; None: not known.
         """
         self._map, self._hits = (occupancy, spec), hits
-        self._apply_map()
+        self._apply_map(changed)
 
-    def _apply_map(self) -> None:
+    def _apply_map(self, changed: CellWindow | None = None) -> None:
         if self._map is not None:
             occupancy, spec = self._map
             marked = self._avoided.marked(occupancy, spec)
-            self.planner.set_map(marked, spec, self._hits)
+            self.planner.set_map(marked, spec, self._hits, changed)
             self._has_map = self._map_changed = True
 
     def avoid_place(self) -> bool:
@@ -202,7 +206,7 @@ class Navigator:
         self.params = params
         self.planner = self.planner.with_params(params)
         self._checker.configure(params)
-        self._plan = self._progress = self._cost_seen = None
+        self._plan = self._progress = None
 
     def note(self, robot: RobotMotion, now_ns: int) -> bool:
         """Update the robot's motion between steps; return whether it just arrived."""
@@ -228,6 +232,7 @@ class Navigator:
             self._checker.begin(now_ns)
             self._compared_ns = now_ns
         self._stepped_ns = now_ns
+        self.planner.hold(self._goal)
         if robot is None or stale:
             self._drop_path()
             self._set_status(Phase.WAITING_FOR_ODOMETRY if robot is None
@@ -290,7 +295,7 @@ class Navigator:
         self, progress: PathProgress, here: Pose2, goal: Goal
     ) -> None:
         """Replace a valid path only by one that is cheaper by the margin."""
-        if not self._some_cost_fell():
+        if not self.planner.take_cost_fall():
             return
         now_costs = self.planner.cost_of(progress.ahead)
         worth = (1 - self.params.switch_gain) * now_costs
@@ -302,22 +307,14 @@ class Navigator:
         if other is not None and other.cost < worth:
             self._accept(other, here)
 
-    def _some_cost_fell(self) -> bool:
-        before, after = self._cost_seen, self.planner.grid().cost
-        self._cost_seen = after
-        if after is before:
-            return False
-        if before is None or before.shape != after.shape:
-            return True
-        return bool((after < before).any())
-
     def _replan(self, here: Pose2, goal: Goal, *, exact_start: bool = False) -> None:
         first = not self.report.plan
         plan = self.planner.plan(here, goal, exact_start=exact_start)
         if not plan.outcome.has_path and self._avoided.clear():
             self._apply_map()  # no other path exists
             plan = self.planner.plan(here, goal, exact_start=exact_start)
-        self._cost_seen, self._map_changed = self.planner.grid().cost, False
+        self.planner.take_cost_fall()
+        self._map_changed = False
         if plan.outcome.has_path:
             self._accept(plan, here)
             return

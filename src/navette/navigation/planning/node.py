@@ -234,7 +234,13 @@ class PlannerNode(StageNode):
     def _apply_map(self) -> None:
         assert self._map is not None, "called with a map"
         (occupancy, spec), hits = self._map, self._newest_hits()
-        self._when_stepped(lambda: self._navigator.set_map(occupancy, spec, hits))
+
+        def apply() -> None:
+            if self._worker.is_busy:  # with a request, or a step that was dropped
+                self._navigator.planner.detach()
+            self._navigator.set_map(occupancy, spec, hits)
+
+        self._when_stepped(apply)
         self.on_timer()
 
     def on_odometry(self, msg: Odometry) -> None:

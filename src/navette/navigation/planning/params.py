@@ -54,6 +54,11 @@ class PlannerParams(BendParams):
         at_most=50.0,
     )
 
+    max_size_m: float = param(
+        400.0,
+        "largest edge of the map with a goal outside it, up to 8000 cells",
+        above=0.0,
+    )
     moving_horizon_s: float = param(
         2.0,
         "paths avoid where moving obstacles will be within this time; 0: nowhere",

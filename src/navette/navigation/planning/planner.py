@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from navette.geometry import OMNI, Footprint, Pose2
 from navette.navigation.grids import (
     NO_DISCS,
+    CellWindow,
     GridSpec,
     Layer,
     StartArea,
@@ -39,8 +40,10 @@ from navette.navigation.planning.planning_grid import (
     PlanningGrid,
     open_at,
     planning_grid,
+    update_grid,
     without_obstacles_in,
 )
+from navette.navigation.planning.planning_map import PlanningMap
 from navette.navigation.planning.route import GridRouter
 from navette.params.plugins import MethodFaultError
 
@@ -92,9 +95,11 @@ class Planner:
         self.footprint = Footprint.from_flat(params.footprint_m)
         self.router = GridRouter(params)
         self._own = _own_plan(params)
-        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._map: PlanningMap | None = None
         self._hits = NO_HITS
         self._body: BodyShape | None = None
+        self._resolution = 0.0
+        self._some_cost_fell = True
         self._grids: dict[float, PlanningGrid] = {}
         self._moving = NO_DISCS
         self._moved: dict[float, PlanningGrid] = {}  # grids with what moves
@@ -104,16 +109,23 @@ class Planner:
     def copy(self) -> "Planner":
         """Return a planner with the same map that changes independently."""
         other = copy.copy(self)
+        other._map = copy.copy(self._map)
         other._grids = self._grids.copy()
         other._moved = self._moved.copy()
         return other
+
+    def detach(self) -> None:
+        """Take arrays of its own: copies of this planner keep what they have."""
+        if self._map is not None:
+            self._map = self._map.copy()
+        self._grids = {margin: grid.copy() for margin, grid in self._grids.items()}
 
     def with_params(self, params: PlannerParams) -> "Planner":
         """Return a planner with other parameters on the same map."""
         other = Planner(params)
         other.put_down_at = self.put_down_at
         if self._map is not None:
-            other.set_map(*self._map, self._hits)
+            other.set_map(self._map.cells, self._map.spec, self._hits)
         return other
 
     def set_map(
@@ -121,23 +133,65 @@ class Planner:
         occupancy: NDArray[np.int8],
         spec: GridSpec,
         hits: NDArray[np.float64] = NO_HITS,
+        changed: CellWindow | None = None,
     ) -> None:
         """Replace the map (H, W): −1 unknown, 0 free … 100 occupied.
 
-        ``hits`` (N, 2), map frame, m: where beams ended within its lethal cells.
+        Args:
+            occupancy: the array may be that of the last call.
+            spec: its geometry.
+            hits: (N, 2), map frame, m: where beams ended within its lethal cells.
+            changed: the cells that changed since the last call; None: not known.
         """
-        if self._map is None or self._map[1].resolution != spec.resolution:
+        if self._body is None or self._resolution != spec.resolution:
             self._body = BodyShape.of(self.footprint, spec.resolution)
-        self._map = occupancy, spec
+            self._resolution = spec.resolution
         self._hits = hits
-        self._grids.clear()
         self._moved.clear()
+        window = None
+        if self._map is None:
+            self._map = PlanningMap(occupancy, spec)
+        else:
+            window = self._map.receive(occupancy, spec, changed)
+        if window is None:
+            self._grids.clear()
+            self._some_cost_fell = True
+        else:
+            self._update_grids(window)
+
+    def _update_grids(self, window: CellWindow) -> None:
+        """Change the grid of the usual margin; others are prepared again on demand."""
+        assert self._map is not None, "called with a map"
+        margin = self.params.clearance_margin_m
+        grid = self._grids.get(margin)
+        self._grids.clear()
+        if grid is None:
+            self._some_cost_fell = True
+            return
+        self._grids[margin], fell = update_grid(
+            grid, self._map.cells, window, self.params.lethal_cost, self._hits
+        )
+        self._some_cost_fell |= fell
+
+    def hold(self, goal: Goal) -> None:
+        """Enlarge the map to hold a goal, within ``max_size_m``."""
+        if self._map is None or not all(map(math.isfinite, (goal.x, goal.y))):
+            return
+        if self._map.hold(goal.x, goal.y, self.params.max_size_m):
+            self._grids.clear()
+            self._moved.clear()
+
+    def take_cost_fall(self) -> bool:
+        """Return whether a cost in the map fell since the last call."""
+        fell, self._some_cost_fell = self._some_cost_fell, False
+        return fell
 
     def set_moving(self, discs: NDArray[np.float64]) -> None:
         """Replace the moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
         if len(discs) or len(self._moving):
             self._moving = discs
             self._moved.clear()
+            self._some_cost_fell = True
 
     def warm_up(self) -> None:
         """Compile or load every kernel before the first goal."""
@@ -168,7 +222,7 @@ class Planner:
         if margin not in self._grids:
             params = replace(self.params, clearance_margin_m=margin)
             self._grids[margin] = planning_grid(
-                *self._map, self.body, params, self._hits
+                self._map.cells, self._map.spec, self.body, params, self._hits
             )
         if not len(self._moving):
             return self._grids[margin]
@@ -189,8 +243,11 @@ class Planner:
         start: a robot between obstacles cannot steer towards another heading.
         """
         if exact_start and self._own is None:
-            params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
-            return self.with_params(params).plan(start, goal)
+            other = self.copy()
+            other.params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
+            other.router = self.router.with_params(other.params)
+            return other.plan(start, goal)
+        self.hold(goal)
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)
@@ -205,7 +262,7 @@ class Planner:
         """Plan with the user's method; the path is driven as it is."""
         assert self._map is not None, "set_map comes first"
         margin = min(self.params.tight_margin_m, self.params.clearance_margin_m)
-        grid = PlannerGrid.of(self._map[0], self._opened(margin, start))
+        grid = PlannerGrid.of(self._map.cells, self._opened(margin, start))
         poses = own.plan(grid, start, goal)
         if poses is None:
             return Plan(Outcome.NO_PATH)
@@ -241,7 +298,7 @@ class Planner:
         Returns ``plan``, which has none, with its reason if that is certain now.
         """
         assert self._map is not None, "set_map comes first"
-        occupancy, spec = self._map
+        occupancy, spec = self._map.cells, self._map.spec
         ends = np.array([(start.x, start.y), (goal.x, goal.y)])
         reach_m = 2 * self.body.circumscribed_m
         closer = close_map(
@@ -308,6 +365,7 @@ class Planner:
 
         This is cheap, to look for a better path while one is being driven.
         """
+        self.hold(goal)
         if self._own is not None or self._refusal(start, goal) is not None:
             return None
         margin = self.params.clearance_margin_m
@@ -392,7 +450,7 @@ class Planner:
         put_down_at = self.put_down_at or start
         hand_m = self.params.blind_reverse_m
         area = StartArea.of(self.footprint, put_down_at, hand_m)
-        return unseen_mask(Layer(*self._map), area)
+        return unseen_mask(Layer(self._map.cells, self._map.spec), area)
 
     def _ends_cramped(self, grid: PlanningGrid, route: Poses) -> bool:
         """Return whether a robot that stops slightly late would be too close."""
@@ -414,9 +472,8 @@ class Planner:
     def _opened(self, margin_m: float, start: Pose2) -> PlanningGrid:
         """Return the grid with the body's cells free and the start open."""
         assert self._map is not None, "set_map comes first"
-        params = replace(self.params, clearance_margin_m=margin_m)
         grid = self.grid(margin_m)
-        grid = without_obstacles_in(grid, self._map[0], start, self.body, params)
+        grid = without_obstacles_in(grid, self._map.cells, start, self.body)
         cell = grid.cell_of(start.x, start.y)
         assert cell is not None, "the start lies in the map"
         return open_at(grid, cell, self.body)

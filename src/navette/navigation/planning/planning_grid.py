@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
+    CellWindow,
     GridSpec,
     ObstacleGrid,
     body_points,
     cells_in_footprint,
-    distance_field,
     make_obstacles,
     mark_points,
 )
-from navette.navigation.grids.distance import MAX_RADIUS
+from navette.navigation.planning.cell_costs import CellCosts
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -30,12 +30,6 @@ from navette.navigation.planning.traversal import (
     Cell,
     EdgeTable,
 )
-
-# Share of the full clearance cost that applies at once where the body can no longer
-# turn in place: a step keeps paths out of there, a slope alone would not.
-_STEP = 0.2
-# Distance step of the cost table.
-_LEVEL_M = 0.004
 
 NO_HITS = np.empty((0, 2))
 
@@ -85,11 +79,14 @@ class BodyShape:
 class PlanningGrid:
     """A map prepared for one body.
 
+    The arrays belong to one planner, which changes them where the map has changed.
+
     Attributes:
         spec: geometry of the grid in the map frame.
         obstacles: (H, W) uint8, 1 = lethal.
         distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
         cost: (H, W) uint8 for ``table``; 255 where the base cannot be.
+        costs: how the cells became costs.
         margin_m: clearance that the body keeps.
         hits: (N, 2) map frame, m: where beams ended; empty = not known.
     """
@@ -98,9 +95,18 @@ class PlanningGrid:
     obstacles: NDArray[np.uint8]
     distance_m: NDArray[np.float32]
     cost: NDArray[np.uint8]
-    table: EdgeTable
+    costs: CellCosts
     margin_m: float
     hits: NDArray[np.float64]
+
+    def copy(self) -> "PlanningGrid":
+        """Return a grid with arrays of its own."""
+        return replace(
+            self,
+            obstacles=self.obstacles.copy(),
+            distance_m=self.distance_m.copy(),
+            cost=self.cost.copy(),
+        )
 
     @cached_property
     def exact_obstacles(self) -> ObstacleGrid:
@@ -112,7 +118,12 @@ class PlanningGrid:
     @property
     def outside_m(self) -> float:
         """Distance to obstacles assumed outside the map."""
-        return float(self.distance_m.max())
+        return self.costs.reach_m
+
+    @property
+    def table(self) -> EdgeTable:
+        """Cost of entering a cell by its cost."""
+        return self.costs.table
 
     def factor(self) -> NDArray[np.float32]:
         """Return (H, W) the cost of a metre in each cell; closed: the highest."""
@@ -167,22 +178,56 @@ def planning_grid(
         raise InvalidValueError(
             f"occupancy grid of shape {occupancy.shape}: expected {spec.shape}"
         )
-    return _prepared(
-        occupancy,
-        (occupancy >= params.lethal_cost).astype(np.uint8),
-        spec,
-        body,
-        params,
-        hits,
+    costs = CellCosts.of(params, body.closed_m, body.circumscribed_m, spec.resolution)
+    obstacles = (occupancy >= params.lethal_cost).astype(np.uint8)
+    distance_m = np.empty(spec.shape, np.float32)
+    cost = np.zeros(spec.shape, np.uint8)
+    whole = costs.measure(
+        obstacles, distance_m, spec.resolution, CellWindow.whole(spec.shape)
+    )
+    costs.fill(occupancy, distance_m, cost, whole)
+    return PlanningGrid(
+        spec, obstacles, distance_m, cost, costs, params.clearance_margin_m, hits
     )
 
 
-def without_obstacles_in(
+def update_grid(
     grid: PlanningGrid,
     occupancy: NDArray[np.int8],
-    start: Pose2,
-    body: BodyShape,
-    params: PlannerParams,
+    window: CellWindow,
+    lethal_cost: int,
+    hits: NDArray[np.float64],
+) -> tuple[PlanningGrid, bool]:
+    """Change a grid where its map has changed.
+
+    Args:
+        grid: its arrays are changed in place.
+        occupancy: (H, W) the map as it is now.
+        window: the cells that may have changed.
+        lethal_cost: occupancy from which a cell is an obstacle.
+        hits: as of :class:`PlanningGrid`.
+
+    Returns:
+        The grid as it is now, and whether any cost fell.
+    """
+    now = (occupancy[window.slices] >= lethal_cost).astype(np.uint8)
+    rows, columns = np.nonzero(now != grid.obstacles[window.slices])
+    if len(rows):
+        grid.obstacles[window.slices] = now
+        moved = CellWindow(
+            int(rows.min()), int(rows.max()) + 1, int(columns.min()),
+            int(columns.max()) + 1,
+        ).shifted(window.first_row, window.first_column)  # fmt: skip
+        resolution = grid.spec.resolution
+        window = window.union(
+            grid.costs.measure(grid.obstacles, grid.distance_m, resolution, moved)
+        )
+    fell = grid.costs.fill(occupancy, grid.distance_m, grid.cost, window)
+    return replace(grid, hits=hits), fell
+
+
+def without_obstacles_in(
+    grid: PlanningGrid, occupancy: NDArray[np.int8], start: Pose2, body: BodyShape
 ) -> PlanningGrid:
     """Remove the lethal cells inside the body at ``start``.
 
@@ -193,9 +238,16 @@ def without_obstacles_in(
     rows, columns = inside[:, 0], inside[:, 1]
     if not grid.obstacles[rows, columns].any():
         return grid
-    obstacles = grid.obstacles.copy()
-    obstacles[rows, columns] = 0
-    return _prepared(occupancy, obstacles, grid.spec, body, params, grid.hits)
+    other = grid.copy()
+    other.obstacles[rows, columns] = 0
+    window = CellWindow(
+        int(rows.min()), int(rows.max()) + 1, int(columns.min()), int(columns.max()) + 1
+    )
+    changed = other.costs.measure(
+        other.obstacles, other.distance_m, other.spec.resolution, window
+    )
+    other.costs.fill(occupancy, other.distance_m, other.cost, changed)
+    return other
 
 
 def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
@@ -217,51 +269,3 @@ def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
     )
     cost[start] = MAX_PASSABLE_COST
     return replace(grid, cost=cost)
-
-
-def _prepared(
-    occupancy: NDArray[np.int8],
-    obstacles: NDArray[np.uint8],
-    spec: GridSpec,
-    body: BodyShape,
-    params: PlannerParams,
-    hits: NDArray[np.float64],
-) -> PlanningGrid:
-    margin = params.clearance_margin_m
-    closed_m = body.closed_m + margin
-    free_m = body.circumscribed_m + margin + params.comfort_m
-    reach_m = min(free_m + spec.resolution, (MAX_RADIUS - 1) * spec.resolution)
-    distance_m = distance_field(obstacles, spec.resolution, reach_m)
-    weight = max(
-        params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
-    )
-    scale = MAX_PASSABLE_COST / weight
-    levels = (distance_m * np.float32(1 / _LEVEL_M)).astype(np.int32)
-    count = round((free_m + spec.resolution) / _LEVEL_M) + 2
-    full = params.clearance_weight * scale
-    cost = _clearance_table(count, closed_m, free_m, full).take(levels, mode="clip")
-    if params.map_cost_weight > 0:
-        own = np.clip(occupancy, 0, 99) * (params.map_cost_weight * scale / 99)
-        np.maximum(cost, own.astype(np.uint8), out=cost)
-    unknown = occupancy < 0
-    if params.allow_unknown:
-        floor = np.uint8(min(MAX_PASSABLE_COST, round(params.unknown_cost * scale)))
-        np.maximum(cost, floor, out=cost, where=unknown)
-    else:
-        cost[unknown] = LETHAL
-    return PlanningGrid(
-        spec, obstacles, distance_m, cost, EdgeTable(weight), margin, hits
-    )
-
-
-def _clearance_table(
-    levels: int, closed_m: float, free_m: float, full: float
-) -> NDArray[np.uint8]:
-    """Return the cost by distance step: closed, then decreasing, then free."""
-    distance = (np.arange(levels) + 0.5) * _LEVEL_M
-    slope = (free_m - distance) / (free_m - closed_m)
-    falling = full * (_STEP + (1 - _STEP) * slope)
-    table = np.where(distance < free_m, falling, 0.0)
-    table = np.clip(np.rint(table), 0, MAX_PASSABLE_COST).astype(np.uint8)
-    table[distance < closed_m] = LETHAL
-    return table

@@ -1,5 +1,6 @@
 """A route on the grid: search, straighten, smooth, add headings; for a point robot."""
 
+import copy
 import math
 from collections.abc import Callable
 
@@ -49,6 +50,12 @@ class GridRouter:
         self.params = params
         self.centres = centres
         self._search = _make_search(params)
+
+    def with_params(self, params: PlannerParams) -> "GridRouter":
+        """Return a router with other parameters that uses the same search."""
+        other = copy.copy(self)
+        other.params = params
+        return other
 
     def route(
         self,

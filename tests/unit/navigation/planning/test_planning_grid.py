@@ -71,11 +71,11 @@ def test_obstacles_inside_the_body_are_ignored() -> None:
     fill(occupancy, spec, (6.3, 6.5), (4, 4.2))
     grid = planning_grid(occupancy, spec, BODY, params)
     start = Pose2(6, 4, 0.4)
-    cleared = without_obstacles_in(grid, occupancy, start, BODY, params)
+    cleared = without_obstacles_in(grid, occupancy, start, BODY)
     assert grid.obstacles.sum() - cleared.obstacles.sum() == 4
     assert cleared.cost[spec.cell_of(6, 4)] != LETHAL
     elsewhere = Pose2(9, 4, 0.0)
-    assert without_obstacles_in(grid, occupancy, elsewhere, BODY, params) is grid
+    assert without_obstacles_in(grid, occupancy, elsewhere, BODY) is grid
 
 
 def test_a_start_inside_inflation_is_opened_away_from_the_obstacle_only() -> None:

@@ -141,7 +141,7 @@ def test_stale_odometry_stops_and_fresh_odometry_continues() -> None:
     ("goal", "outcome"),
     [
         ((math.nan, 1.0), Outcome.GOAL_NOT_FINITE),
-        ((50.0, 1.0), Outcome.GOAL_OUTSIDE_MAP),
+        ((500.0, 1.0), Outcome.GOAL_OUTSIDE_MAP),
     ],
 )
 def test_a_refused_goal_stops_the_robot_and_counts(goal, outcome: Outcome) -> None:
@@ -163,7 +163,7 @@ def test_a_refused_goal_stops_the_robot_and_counts(goal, outcome: Outcome) -> No
 
 def test_a_failure_publishes_an_empty_path_in_any_case() -> None:
     drive = Drive()
-    drive.send(50, 1)
+    drive.send(500, 1)
     drive.step()
     assert [len(p) for p in drive.published] == [0]
 

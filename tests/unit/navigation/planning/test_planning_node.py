@@ -88,7 +88,7 @@ def test_goals_before_the_map_or_the_odometry_wait(graph: GraphHarness) -> None:
     [
         (math.nan, 4.0, "map", "goal_not_finite"),
         (8.0, math.inf, "map", "goal_not_finite"),
-        (80.0, 4.0, "map", "goal_outside_map"),
+        (800.0, 4.0, "map", "goal_outside_map"),
         (8.0, 4.0, "mars", "unknown_frame"),
         (5.0, 4.0, "map", "goal_blocked"),
         (9.5, 7.5, "map", "no_path"),

@@ -121,7 +121,7 @@ def test_every_failure_has_a_code_and_a_reason(graph: GraphHarness) -> None:
             "start_outside_map",
         ),
         (there, {"start": nan, "use_start": True}, ToPose.START_OUTSIDE_MAP, "start"),
-        (stamped(50, 4), {}, ToPose.GOAL_OUTSIDE_MAP, "goal_outside_map"),
+        (stamped(500, 4), {}, ToPose.GOAL_OUTSIDE_MAP, "goal_outside_map"),
         (nan, {}, ToPose.GOAL_OUTSIDE_MAP, "goal_not_finite"),
         (stamped(8, 4), {}, ToPose.GOAL_OCCUPIED, "goal_blocked"),
     ):
@@ -186,7 +186,7 @@ def test_a_path_leads_through_all_poses(graph: GraphHarness) -> None:
 def test_failures_of_a_path_through_poses(graph: GraphHarness) -> None:
     World(graph).ready()
     assert through(graph, []).result.error_code == ThroughPoses.NO_VIAPOINTS_GIVEN
-    beyond = through(graph, [stamped(4, 4), stamped(50, 4), stamped(8, 4)])
+    beyond = through(graph, [stamped(4, 4), stamped(500, 4), stamped(8, 4)])
     assert beyond.result.error_code == ThroughPoses.GOAL_OUTSIDE_MAP
     assert "goal 2 of 3" in beyond.result.error_msg
     unknown = through(graph, [stamped(4, 4)], planner_id="teb")

@@ -1,0 +1,163 @@
+"""Cost of each cell from its distance to obstacles and its occupancy."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.files.kernels import kernel
+from navette.navigation.grids import CellWindow, distance_field
+from navette.navigation.grids.distance import MAX_RADIUS
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.traversal import (
+    LETHAL,
+    MAX_PASSABLE_COST,
+    EdgeTable,
+)
+
+# Share of the full clearance cost that applies at once where the body can no longer
+# turn in place: a step keeps paths out of there, a slope alone would not.
+_STEP = 0.2
+# Distance step of the cost table.
+_LEVEL_M = 0.004
+
+
+@dataclass(frozen=True, eq=False)
+class CellCosts:
+    """How the cells of a map become costs for one body and one margin.
+
+    Attributes:
+        reach_m: distance to obstacles from which more does not matter.
+        by_level: cost by distance, in steps of 4 mm.
+        own_scale: cost by occupancy.
+        unknown: least cost of an unknown cell; LETHAL where paths do not cross them.
+        table: the edges that belong to the costs.
+    """
+
+    reach_m: float
+    by_level: NDArray[np.uint8]
+    own_scale: float
+    unknown: np.uint8
+    table: EdgeTable
+
+    @classmethod
+    def of(
+        cls,
+        params: PlannerParams,
+        closed_m: float,
+        circumscribed_m: float,
+        resolution: float,
+    ) -> "CellCosts":
+        """Return the costs for a body.
+
+        Args:
+            params: weights and margins.
+            closed_m: distance to an obstacle, above the margin, below which a grid
+                search does not move the base.
+            circumscribed_m: radius of the circle of a turn in place.
+            resolution: edge of a cell, m.
+        """
+        closed_m += params.clearance_margin_m
+        free_m = circumscribed_m + params.clearance_margin_m + params.comfort_m
+        weight = max(
+            params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
+        )
+        scale = MAX_PASSABLE_COST / weight
+        count = round((free_m + resolution) / _LEVEL_M) + 2
+        full = params.clearance_weight * scale
+        floor = min(MAX_PASSABLE_COST, round(params.unknown_cost * scale))
+        return cls(
+            min(free_m + resolution, (MAX_RADIUS - 1) * resolution),
+            _clearance_table(count, closed_m, free_m, full),
+            params.map_cost_weight * scale / 99,
+            np.uint8(floor if params.allow_unknown else LETHAL),
+            EdgeTable(weight),
+        )
+
+    def fill(
+        self,
+        occupancy: NDArray[np.int8],
+        distance_m: NDArray[np.float32],
+        cost: NDArray[np.uint8],
+        window: CellWindow,
+    ) -> bool:
+        """Fill in the costs (H, W) of a window; return whether any cost fell."""
+        return bool(
+            _fill(
+                occupancy,
+                distance_m,
+                cost,
+                window,
+                self.by_level,
+                self.own_scale,
+                self.unknown,
+            )
+        )
+
+    def measure(
+        self,
+        obstacles: NDArray[np.uint8],
+        distance_m: NDArray[np.float32],
+        resolution: float,
+        window: CellWindow,
+    ) -> CellWindow:
+        """Fill in the distances (H, W) about a window whose obstacles changed.
+
+        Returns the cells whose distance may have changed.
+        """
+        reach = int(np.ceil(self.reach_m / resolution))
+        shape = obstacles.shape
+        near, around = window.grown(reach, shape), window.grown(2 * reach, shape)
+        if around == CellWindow.whole(shape):
+            distance_m[:] = distance_field(obstacles, resolution, self.reach_m)
+            return around
+        field = distance_field(
+            np.ascontiguousarray(obstacles[around.slices]), resolution, self.reach_m
+        )
+        inner = near.shifted(-around.first_row, -around.first_column)
+        distance_m[near.slices] = field[inner.slices]
+        return near
+
+
+@kernel
+def _fill(
+    occupancy: Any,
+    distance_m: Any,
+    cost: Any,
+    window: Any,
+    by_level: Any,
+    own_scale: float,
+    unknown: Any,
+) -> bool:
+    last = by_level.size - 1
+    per_level = np.float32(1 / _LEVEL_M)
+    fell = False
+    for row in range(window.first_row, window.last_row):
+        known = occupancy[row, window.first_column : window.last_column]
+        away = distance_m[row, window.first_column : window.last_column]
+        line = cost[row, window.first_column : window.last_column]
+        for k in range(line.size):
+            level = np.int32(away[k] * per_level)
+            new = by_level[min(level, last)]
+            if own_scale > 0.0:
+                own = np.uint8(min(max(known[k], 0), 99) * own_scale)
+                new = max(new, own)
+            if known[k] < 0:
+                new = max(new, unknown)
+            fell |= new < line[k]
+            line[k] = new
+    return fell
+
+
+def _clearance_table(
+    levels: int, closed_m: float, free_m: float, full: float
+) -> NDArray[np.uint8]:
+    """Return the cost by distance step: closed, then decreasing, then free."""
+    distance = (np.arange(levels) + 0.5) * _LEVEL_M
+    slope = (free_m - distance) / (free_m - closed_m)
+    falling = full * (_STEP + (1 - _STEP) * slope)
+    table = np.where(distance < free_m, falling, 0.0)
+    table = np.clip(np.rint(table), 0, MAX_PASSABLE_COST).astype(np.uint8)
+    table[distance < closed_m] = LETHAL
+    return table
