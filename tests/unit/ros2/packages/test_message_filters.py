@@ -146,6 +146,25 @@ def test_the_oldest_message_of_a_full_queue_is_dropped() -> None:
     assert sets.seen == [(2, 2), (3, 3)]
 
 
+def test_stamps_in_any_order() -> None:
+    a, b = SimpleFilter(), SimpleFilter()
+    sets = Sets(TimeSynchronizer([a, b], 10))
+    for seconds in (5, 1, 3):
+        a.signalMessage(point(seconds * 1000))
+    for seconds in (1, 3, 5):
+        b.signalMessage(point(seconds * 1000))
+    assert sets.seen == [(1000, 1000), (3000, 3000), (5000, 5000)]
+
+
+def test_a_bag_that_loops() -> None:
+    a, b = SimpleFilter(), SimpleFilter()
+    sets = Sets(TimeSynchronizer([a, b], 2))
+    for seconds in (100, 101, 1):
+        a.signalMessage(point(seconds * 1000))
+    b.signalMessage(point(1000))
+    assert sets.seen == [(1000, 1000)]
+
+
 def test_the_exact_synchronizer_requires_stamps(graph: GraphHarness) -> None:
     TimeSynchronizer([Subscriber(graph.node, String, "text"), SimpleFilter()], 1)
     graph.publish("/text", String())

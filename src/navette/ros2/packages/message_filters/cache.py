@@ -6,18 +6,12 @@ from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.ros2.packages.message_filters.simple_filter import SimpleFilter, clock_of
-from navette.ros2.packages.message_filters.stamps import (
-    NEW_RUN_NS,
-    StampReader,
-    as_time,
-)
+from navette.ros2.packages.message_filters.stamps import StampReader, as_time
 from navette.runtime import Time
 
 
 class Cache(SimpleFilter):
     """The last ``cache_size`` messages in order of arrival.
-
-    The cache is cleared when stamps jump backward by more than 1 s (a bag that loops).
 
     Args:
         f: the input filter.
@@ -49,10 +43,6 @@ class Cache(SimpleFilter):
         stamp = self._stamps.read(msg)
         if stamp is None:
             return
-        latest = self.getLatestTime()
-        if latest is not None and stamp.nanoseconds < latest.nanoseconds - NEW_RUN_NS:
-            self.cache_msgs.clear()
-            self.cache_times.clear()
         self.cache_times.append(stamp)
         self.cache_msgs.append(msg)
         if len(self.cache_msgs) > self.cache_size:

@@ -5,9 +5,6 @@ from typing import Any
 
 from navette.runtime import Clock, ClockType, Time
 
-NEW_RUN_NS = 1_000_000_000
-"""Stamps that jump backward by more belong to another run (a looping bag, a reset)."""
-
 _LOG = logging.getLogger(__name__)
 
 

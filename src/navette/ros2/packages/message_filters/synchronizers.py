@@ -7,13 +7,11 @@ from typing import Any
 
 from navette.errors import InvalidValueError, MessageError
 from navette.ros2.packages.message_filters.simple_filter import SimpleFilter, clock_of
-from navette.ros2.packages.message_filters.stamps import (
-    NEW_RUN_NS,
-    StampReader,
-    as_time,
-)
+from navette.ros2.packages.message_filters.stamps import StampReader, as_time
 from navette.runtime import Clock, Duration
 
+#: A message that is older than all waiting ones by more belongs to a new run.
+_NEW_RUN_NS = 1_000_000_000
 #: Messages of one input that wait for the other inputs, by stamp (ns).
 Queue = dict[int, Any]
 
@@ -21,8 +19,9 @@ Queue = dict[int, Any]
 class TimeSynchronizer(SimpleFilter):
     """Filter that outputs one message of each input when all have the same stamp.
 
-    The queues are cleared when an input's stamps jump backward by more than 1 s (a bag
-    that loops).
+    Stamps may arrive in any order. Where a full queue would drop a message that is
+    more than 1 s older than all waiting ones, a new run has begun (a bag that loops):
+    all queues are cleared.
 
     Args:
         fs: the input filters.
@@ -62,9 +61,10 @@ class TimeSynchronizer(SimpleFilter):
             self._emit([each] * len(self.queues))
 
     def _put(self, msg: Any, queue: Queue, stamp_ns: int) -> None:
-        if queue and stamp_ns < max(queue) - NEW_RUN_NS:
-            # Otherwise all new messages would be dropped, as those with the oldest
-            # stamp.
+        is_full = len(queue) == self.queue_size
+        if is_full and stamp_ns < min(queue) - _NEW_RUN_NS:
+            # Otherwise this and all further messages would be dropped, as those with
+            # the oldest stamp.
             for each in self.queues:
                 each.clear()
         queue[stamp_ns] = msg
