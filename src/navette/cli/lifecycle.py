@@ -7,7 +7,14 @@ import click
 from navette.cli.commands import Group
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, HiddenNodes, Json, Option
+from navette.cli.options import (
+    AllNodes,
+    Argument,
+    CountNodes,
+    HiddenNodes,
+    Json,
+    Option,
+)
 from navette.cli.output import harmless, show, show_json, show_names, styled
 from navette.cli.service_calls import (
     GET_STATE,
@@ -43,12 +50,8 @@ NodeName = Annotated[
 
 @lifecycle.command()
 def nodes(
-    all_: Annotated[
-        bool, Option("--all", "-a", help="Include hidden nodes (_name).")
-    ] = False,
-    count: Annotated[
-        bool, Option("--count-nodes", "-c", help="Print only the number.")
-    ] = False,
+    all_: AllNodes = False,
+    count: CountNodes = False,
     as_json: Json = False,
 ) -> None:
     """List managed nodes."""

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
-from navette.cli.options import Argument, Json, Option
+from navette.cli.options import AllNodes, Argument, CountNodes, Json, Option
 from navette.cli.output import beside, is_terminal, show, show_json, show_names, styled
 from navette.cli.service_calls import chosen_node, node_names, note_none
 from navette.cli.session import connect, is_hidden, is_of_every_node
@@ -21,12 +21,8 @@ node = Group(
 
 @node.command("list")
 def list_(
-    all_: Annotated[
-        bool, Option("--all", "-a", help="Include hidden nodes (_name).")
-    ] = False,
-    count: Annotated[
-        bool, Option("--count-nodes", "-c", help="Print only the number.")
-    ] = False,
+    all_: AllNodes = False,
+    count: CountNodes = False,
     as_json: Json = False,
 ) -> None:
     """List nodes."""

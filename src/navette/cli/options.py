@@ -63,6 +63,11 @@ Json = Annotated[bool, Option("--json", help="Print JSON.")]
 HiddenNodes = Annotated[
     bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
 ]
+AllNodes = Annotated[bool, Option("--all", "-a", help="Include hidden nodes (_name).")]
+CountNodes = Annotated[
+    bool, Option("--count-nodes", "-c", help="Print only the number.")
+]
+Stdin = Annotated[bool, Option("--stdin", help="Read the YAML from standard input.")]
 
 
 class PanelOption(click.Option):

@@ -6,23 +6,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from navette.geometry import Transform3
+from navette.geometry.messages import header
 from navette.geometry.se3 import rotate
-from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
     PoseWithCovariance,
     Quaternion,
-    Transform,
-    TransformStamped,
     Twist,
     TwistWithCovariance,
     Vector3,
 )
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan
-from navette.msgs.std_msgs.msg import ColorRGBA, Header
+from navette.msgs.std_msgs.msg import ColorRGBA
 from navette.msgs.visualization_msgs.msg import Marker, MarkerArray
 from navette.sim.camera import Image as Pixels
 from navette.sim.camera import focal_length
@@ -45,29 +43,6 @@ from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, yaw of six
-
-
-def time_message(stamp_ns: int) -> Time:
-    seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
-    return Time(sec=seconds, nanosec=nanoseconds)
-
-
-def header(stamp_ns: int, frame: str) -> Header:
-    return Header(stamp=time_message(stamp_ns), frame_id=frame)
-
-
-def transform_message(
-    stamp_ns: int, parent: str, child: str, parent_T_child: Transform3
-) -> TransformStamped:
-    (x, y, z), (qx, qy, qz, qw) = parent_T_child
-    return TransformStamped(
-        header=header(stamp_ns, parent),
-        child_frame_id=child,
-        transform=Transform(
-            translation=Vector3(x=x, y=y, z=z),
-            rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
-        ),
-    )
 
 
 def odometry_message(

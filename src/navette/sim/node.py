@@ -6,6 +6,7 @@ from typing import Any
 
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3
+from navette.geometry.messages import time_message, transform_message
 from navette.msgs import topics
 from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
@@ -201,13 +202,13 @@ class SimNode(StageNode):
     def _publish_latched(self) -> None:
         p, stamp = self.params, self._origin_ns
         transforms = [
-            messages.transform_message(stamp, f.parent, f.name, f.parent_T_frame)
+            transform_message(stamp, f.parent, f.name, f.parent_T_frame)
             for f in self.frames.fixed
         ]
         if p.odometry_frame != p.map_frame and not p.is_corrected:
             origin = Transform3.identity()
             transforms.append(
-                messages.transform_message(stamp, p.map_frame, p.odometry_frame, origin)
+                transform_message(stamp, p.map_frame, p.odometry_frame, origin)
             )
         self.publish(topics.TF_STATIC.name, TFMessage(transforms=transforms))
         compiled = self.simulator.compiled
@@ -314,7 +315,7 @@ class SimNode(StageNode):
         self._contacts_reported = len(episodes)
 
     def _publish_clock(self, stamp_ns: int) -> None:
-        self.publish(topics.CLOCK.name, Clock(clock=messages.time_message(stamp_ns)))
+        self.publish(topics.CLOCK.name, Clock(clock=time_message(stamp_ns)))
 
     def _publish_odometry(self, stamp_ns: int) -> None:
         if self.params.believes_truth:
@@ -370,14 +371,14 @@ class SimNode(StageNode):
 
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params
-        transform = messages.transform_message(
+        transform = transform_message(
             stamp_ns, p.odometry_frame, p.base_frame, self._believed_pose()
         )
         self.publish(topics.TF.name, TFMessage(transforms=[transform]))
 
     def _publish_joint_tf(self, stamp_ns: int) -> None:
         transforms = [
-            messages.transform_message(
+            transform_message(
                 stamp_ns, self.frames.base, frame, self.simulator.link_in_base(link)
             )
             for link, frame in self.frames.moving.items()

@@ -9,7 +9,7 @@ from navette.cli.action.options import ActionName
 from navette.cli.completing import complete_goal
 from navette.cli.message_yaml import yaml_of
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, Json, Option
+from navette.cli.options import Argument, Json, Option, Stdin
 from navette.cli.output import is_terminal, show, show_json, styled
 from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.session import FAILED, connect, fail, service_endpoints, wait_for
@@ -51,9 +51,7 @@ def send_goal(
             help="Wait S seconds for a server; 0: no limit.",
         ),
     ] = 5.0,
-    stdin: Annotated[
-        bool, Option("--stdin", help="Read the YAML from standard input.")
-    ] = False,
+    stdin: Stdin = False,
     as_json: Json = False,
 ) -> None:
     """Send a goal and print its result; Ctrl-C cancels the goal.

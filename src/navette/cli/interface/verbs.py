@@ -2,7 +2,8 @@
 
 import sys
 from collections.abc import Iterable
-from typing import Annotated
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.commands import Group
 from navette.cli.completing_installed import complete_packages, complete_types
@@ -11,6 +12,9 @@ from navette.cli.output import show as put
 from navette.cli.output import show_json
 from navette.cli.session import fail
 from navette.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from navette.cli.interface.listing import Kind
 
 interface = Group(
     name="interface",
@@ -26,9 +30,31 @@ TypeName = Annotated[
         complete=complete_types,
     ),
 ]
-OnlyMsgs = Annotated[bool, Option("--only-msgs", "-m", help="List messages.")]
-OnlySrvs = Annotated[bool, Option("--only-srvs", "-s", help="List services.")]
-OnlyActions = Annotated[bool, Option("--only-actions", "-a", help="List actions.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KindOptions:
+    """Kinds of interfaces to list; none: all."""
+
+    only_msgs: Annotated[bool, Option("--only-msgs", "-m", help="List messages.")] = (
+        False
+    )
+    only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="List services.")] = (
+        False
+    )
+    only_actions: Annotated[
+        bool, Option("--only-actions", "-a", help="List actions.")
+    ] = False
+
+    @property
+    def kinds(self) -> "list[Kind]":
+        """The chosen kinds, in a fixed order."""
+        from navette.cli.interface import listing
+
+        return listing.chosen_kinds(self.only_msgs, self.only_srvs, self.only_actions)
+
+
+ALL_KINDS = KindOptions()
 
 
 @interface.command("show")
@@ -57,16 +83,13 @@ def show(
 
 @interface.command("list")
 def list_(
-    only_msgs: OnlyMsgs = False,
-    only_srvs: OnlySrvs = False,
-    only_actions: OnlyActions = False,
+    only: KindOptions = ALL_KINDS,
     as_json: Json = False,
 ) -> None:
     """List all interfaces: of Navette, the workspace and installed packages."""
     from navette.cli.interface import listing
 
-    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
-    found = {kind: listing.interfaces(kind) for kind in kinds}
+    found = {kind: listing.interfaces(kind) for kind in only.kinds}
     if as_json:
         show_json({kind.value: names for kind, names in found.items()})
         return
@@ -84,30 +107,24 @@ def package(
             complete=complete_packages,
         ),
     ],
-    only_msgs: OnlyMsgs = False,
-    only_srvs: OnlySrvs = False,
-    only_actions: OnlyActions = False,
+    only: KindOptions = ALL_KINDS,
     as_json: Json = False,
 ) -> None:
     """List the interfaces of a package."""
     from navette.cli.interface import listing
 
-    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
-    _put_all(listing.interfaces_of(name, kinds), as_json=as_json)
+    _put_all(listing.interfaces_of(name, only.kinds), as_json=as_json)
 
 
 @interface.command()
 def packages(
-    only_msgs: OnlyMsgs = False,
-    only_srvs: OnlySrvs = False,
-    only_actions: OnlyActions = False,
+    only: KindOptions = ALL_KINDS,
     as_json: Json = False,
 ) -> None:
     """List the packages that define interfaces."""
     from navette.cli.interface import listing
 
-    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
-    _put_all(listing.packages(kinds), as_json=as_json)
+    _put_all(listing.packages(only.kinds), as_json=as_json)
 
 
 def _put_all(names: Iterable[str], *, as_json: bool) -> None:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from navette.cli.completing import complete_request
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, Json, Option
+from navette.cli.options import Argument, Json, Option, Stdin
 from navette.cli.output import show, show_json, styled
 from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.service.listing import services, types_of
@@ -36,9 +36,7 @@ def call(
         float,
         Option("--timeout", "-w", metavar="S", help="Fail after S seconds; 0: never."),
     ] = 5.0,
-    stdin: Annotated[
-        bool, Option("--stdin", help="Read the YAML from standard input.")
-    ] = False,
+    stdin: Stdin = False,
     as_json: Json = False,
 ) -> None:
     """Call a service and print its response.

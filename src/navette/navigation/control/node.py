@@ -47,6 +47,7 @@ from navette.navigation.grids import (
     discs_from_message,
     inside_discs,
 )
+from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.stall_monitor import StallMonitor
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.navigation.servers.motion_node import MotionNode
@@ -168,15 +169,10 @@ class ControlNode(MotionNode):
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""
         self._replace_path()
-        frame = msg.header.frame_id
-        if msg.poses and frame != self.params.map_frame:
-            raise InvalidInputError(
-                "unknown_frame",
-                f"path in frame {frame!r}; expected map_frame, "
-                f"{self.params.map_frame!r}: transform its poses, or set map_frame",
-            )
-        if msg.poses and not self._lifecycle.is_active:
-            raise InvalidInputError("inactive", "controller_server is not active")
+        if msg.poses:
+            check_frame("path", msg.header.frame_id, self.params.map_frame)
+            if not self._lifecycle.is_active:
+                raise InvalidInputError("inactive", "controller_server is not active")
         self._try_path(poses_of(msg))
 
     def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:

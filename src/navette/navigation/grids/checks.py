@@ -1,4 +1,4 @@
-"""Checks of arrays that enter a kernel: type, shape, memory layout.
+"""Checks of inputs: frames; arrays that enter a kernel: type, shape, memory layout.
 
 Kernels are compiled for writable, aligned C-ordered arrays of one dtype. Other arrays
 are copied or refused here, because Numba would compile the kernel again (a second).
@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidInputError, InvalidValueError
 from navette.navigation.grids.spec import GridSpec
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -82,3 +82,13 @@ def at_least(name: str, value: float, minimum: float) -> None:
     """Raise InvalidValueError unless ``value`` is finite and >= ``minimum``."""
     if not (np.isfinite(value) and value >= minimum):
         raise InvalidValueError(f"{name}: {value!r}, must be >= {minimum:g}")
+
+
+def check_frame(what: str, frame_id: str, expected: str) -> None:
+    """Raise InvalidInputError unless a message is in the stage's map frame."""
+    if frame_id != expected:
+        raise InvalidInputError(
+            "unknown_frame",
+            f"{what} in frame {frame_id!r}; expected map_frame, {expected!r}: "
+            "transform it, or set map_frame",
+        )

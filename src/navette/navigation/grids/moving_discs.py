@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
+from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.spec import UNKNOWN, Cells, GridSpec
 
 Array = NDArray[np.float64]
@@ -40,11 +41,8 @@ def discs_from_message(msg: ObstacleArray, frame: str) -> MovingDiscs:
     Raises:
         InvalidInputError: another frame, or a value that is not finite or negative.
     """
-    if msg.obstacles and msg.header.frame_id != frame:
-        raise InvalidInputError(
-            "unknown_frame",
-            f"obstacles in frame {msg.header.frame_id!r}; expected {frame!r}",
-        )
+    if msg.obstacles:
+        check_frame("obstacles", msg.header.frame_id, frame)
     rows = [
         (o.position.x, o.position.y, o.velocity.x, o.velocity.y,
          max(o.size.x, o.size.y) / 2)

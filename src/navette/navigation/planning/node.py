@@ -39,6 +39,7 @@ from navette.navigation.grids import (
     discs_from_message,
     grid_from_message,
 )
+from navette.navigation.grids.checks import check_frame
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
@@ -205,12 +206,7 @@ class PlannerNode(StageNode):
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map; a path that it blocks is replaced at once."""
-        if msg.header.frame_id != self.params.map_frame:
-            raise InvalidInputError(
-                "unknown_frame",
-                f"map in frame {msg.header.frame_id!r}; expected map_frame, "
-                f"{self.params.map_frame!r}",
-            )
+        check_frame("map", msg.header.frame_id, self.params.map_frame)
         try:
             occupancy, spec = grid_from_message(msg)
         except InvalidValueError as error:

@@ -9,6 +9,7 @@ from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import Obstacles, ObstacleTracker
+from navette.navigation.grids.checks import check_frame
 from navette.navigation.shared_params import MotionParams
 from navette.runtime.stage.input_period import InputPeriod
 from navette.runtime.stage.odometry import PoseTracker
@@ -75,10 +76,7 @@ class MotionNode(StageNode):
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map for what the costmap does not show."""
-        frame_id, map_frame = msg.header.frame_id, self.params.map_frame
-        if frame_id != map_frame:
-            text = f"map in frame {frame_id!r}; expected map_frame, {map_frame!r}"
-            raise InvalidInputError("unknown_frame", text)
+        check_frame("map", msg.header.frame_id, self.params.map_frame)
         self._obstacles.remember(msg)
 
     @property

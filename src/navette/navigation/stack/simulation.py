@@ -7,7 +7,6 @@ from typing import Any
 
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
-from navette.files.runs import RunInfo
 from navette.msgs.topics import CLOCK
 from navette.navigation.stack.localization import (
     localization_nodes,
@@ -105,11 +104,6 @@ class Simulation:
                 "already, and its robot would follow this run's commands; end it, "
                 "choose another domain (ROS_DOMAIN_ID), or start without --share"
             )
-
-    @property
-    def run_info(self) -> RunInfo | None:
-        """The private run; None if the run is shared, or stays in this process."""
-        return None if self._reserved.run is None else self._reserved.run.info
 
     def _overrides(self, resolved: ResolvedScene) -> ParameterOverrides:
         """Return the robot's parameters, the options, the user's files: last wins."""

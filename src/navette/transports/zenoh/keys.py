@@ -9,7 +9,6 @@ from navette.errors import DecodeError, InvalidValueError
 
 _TYPE = re.compile(r"([A-Za-z]\w*)/(msg|srv|action)/([A-Za-z]\w*)", re.ASCII)
 _DDS_TYPE = re.compile(r"([A-Za-z]\w*)::(msg|srv|action)::dds_::([A-Za-z]\w*)_", re.A)
-_NAME = re.compile(r"(/[A-Za-z_]\w*)+", re.ASCII)
 _MANGLED_NAME = re.compile(r"(%[A-Za-z_]\w*)+", re.ASCII)
 
 
@@ -54,8 +53,3 @@ def demangled_name(chunk: str) -> str:
     if not _MANGLED_NAME.fullmatch(chunk):
         raise DecodeError(f"{chunk!r} is not a mangled name")
     return chunk.replace("%", "/")
-
-
-def is_full_name(name: str) -> bool:
-    """Return whether ``name`` is a valid full name of a topic or service."""
-    return _NAME.fullmatch(name) is not None

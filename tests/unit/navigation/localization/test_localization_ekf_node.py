@@ -5,6 +5,7 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Transform3, quaternion_from_rpy, quaternion_from_yaw
+from navette.geometry.messages import transform_message
 from navette.msgs.geometry_msgs.msg import (
     PoseWithCovarianceStamped,
     Quaternion,
@@ -14,7 +15,6 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import Imu, NavSatFix
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.navigation.localization.ekf.messages import transform_message
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.runtime import Parameter, ns_to_stamp
 from navette.testing import GraphHarness, Probe

@@ -2,21 +2,18 @@
 
 import numpy as np
 
-from navette.geometry import Pose2, Transform3, quaternion_from_yaw
-from navette.msgs.builtin_interfaces.msg import Time
+from navette.geometry import Pose2, quaternion_from_yaw
+from navette.geometry.messages import header
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
     PoseWithCovariance,
     Quaternion,
-    Transform,
-    TransformStamped,
     Twist,
     TwistWithCovariance,
     Vector3,
 )
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.msgs.std_msgs.msg import Header
 from navette.navigation.localization.ekf.filter import Estimate
 from navette.navigation.localization.ekf.state import VX, VY, VYAW, YAW, Array, X, Y
 
@@ -31,7 +28,7 @@ def odometry_message(estimate: Estimate, world: str, base: str) -> Odometry:
     state = estimate.state
     qx, qy, qz, qw = quaternion_from_yaw(state[YAW])
     return Odometry(
-        header=_header(estimate.stamp_ns, world),
+        header=header(estimate.stamp_ns, world),
         child_frame_id=base,
         pose=PoseWithCovariance(
             pose=Pose(
@@ -54,25 +51,6 @@ def pose_of(estimate: Estimate) -> Pose2:
     """Return world_T_base."""
     x, y, yaw = estimate.state[[X, Y, YAW]].tolist()
     return Pose2(x, y, yaw)
-
-
-def transform_message(
-    stamp_ns: int, parent: str, child: str, parent_T_child: Transform3
-) -> TransformStamped:
-    (x, y, z), (qx, qy, qz, qw) = parent_T_child
-    return TransformStamped(
-        header=_header(stamp_ns, parent),
-        child_frame_id=child,
-        transform=Transform(
-            translation=Vector3(x=x, y=y, z=z),
-            rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
-        ),
-    )
-
-
-def _header(stamp_ns: int, frame: str) -> Header:
-    seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
-    return Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame)
 
 
 def _spatial(covariance: Array, rows: list[int]) -> Array:

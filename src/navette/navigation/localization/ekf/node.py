@@ -13,6 +13,7 @@ import numpy as np
 
 from navette.errors import InvalidInputError, ParameterError, TransformError
 from navette.geometry import Transform3
+from navette.geometry.messages import transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -22,7 +23,6 @@ from navette.navigation.localization.ekf.messages import (
     PLANAR_POSE,
     odometry_message,
     pose_of,
-    transform_message,
 )
 from navette.navigation.localization.ekf.params import (
     FIXED_AT_START,

@@ -19,6 +19,7 @@ from navette.msgs.geometry_msgs.msg import PoseStamped, Quaternion
 from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.navigation.grids import grid_from_message
+from navette.navigation.grids.checks import check_frame
 from navette.navigation.missions.explore.frontiers import (
     Exploration,
     Frontier,
@@ -127,12 +128,7 @@ class ExplorerNode(StageNode):
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Choose the next goal if there is none or its frontier has been seen."""
-        if msg.header.frame_id != self.params.map_frame:
-            raise InvalidInputError(
-                "unknown_frame",
-                f"map in frame {msg.header.frame_id!r}; expected map_frame, "
-                f"{self.params.map_frame!r}",
-            )
+        check_frame("map", msg.header.frame_id, self.params.map_frame)
         self._map = msg
         if self._started_ns is None:
             self._started_ns = self._now_ns
