@@ -1,6 +1,8 @@
 import "./theme/theme.css";
 import "./theme/controls.css";
+import "./workbench/workbench.css";
+import "./workbench/scene.css";
 import "./panels/index";
-import { Theme } from "./theme/theme";
+import { App } from "./workbench/app";
 
-export const theme = new Theme();
+void new App().start();

@@ -13,12 +13,12 @@ import type { Surroundings } from "./display";
 import { onGround, pick, type Pick } from "./picking";
 import type { Part } from "./primitives";
 import type { DrawItem, Renderer } from "./renderer";
-import { unionOf, Viewing, type Box } from "./viewing";
+import { unionOf, Viewing, type Box, type ViewMode } from "./viewing";
 
 export interface SceneSettings {
   fixedFrame: string | null;
   isThreeDimensional: boolean;
-  follows: boolean;
+  mode: ViewMode;
 }
 
 export class Scene implements Surroundings {
@@ -34,7 +34,6 @@ export class Scene implements Surroundings {
   #chosenFrame: string | null = null;
   #items: readonly DrawItem[] = [];
   #frameTimes: number[] = [];
-  #hasFitted = false;
   readonly #listeners = new Set<() => void>();
 
   constructor(
@@ -50,7 +49,7 @@ export class Scene implements Surroundings {
     transforms.onStructure(() => this.#changed());
     new ResizeObserver(() => this.invalidate()).observe(this.element);
     connection.on("status", ({ state }) => {
-      if (state === "lost") this.#hasFitted = false;
+      if (state === "lost") this.viewing.replace();
     });
   }
 
@@ -81,12 +80,12 @@ export class Scene implements Surroundings {
   }
 
   get settings(): SceneSettings {
-    return { fixedFrame: this.#chosenFrame, isThreeDimensional: this.#isThreeDimensional, follows: this.viewing.follows };
+    return { fixedFrame: this.#chosenFrame, isThreeDimensional: this.#isThreeDimensional, mode: this.viewing.mode };
   }
 
-  async restore({ fixedFrame, isThreeDimensional, follows }: SceneSettings): Promise<void> {
+  async restore({ fixedFrame, isThreeDimensional, mode }: SceneSettings): Promise<void> {
     this.chooseFrame(fixedFrame);
-    this.viewing.follow(follows);
+    this.viewing.setMode(mode);
     await this.setThreeDimensional(isThreeDimensional);
   }
 
@@ -149,13 +148,6 @@ export class Scene implements Surroundings {
     return pick(this.#items, this.#renderer.ray(this.viewing.viewpoint, px, py));
   }
 
-  /** Show everything that is known. */
-  fit(): void {
-    this.#hasFitted = true;
-    const box = this.known() ?? [-6, -6, 6, 6];
-    this.viewing.fit(box, this.element.clientWidth || 1, this.element.clientHeight || 1);
-  }
-
   /** Known cells of the map, else clouds; the robot and the goal too. */
   known(): Box | null {
     const boxes: Box[] = [];
@@ -187,10 +179,11 @@ export class Scene implements Surroundings {
 
   #moveView(fixed: string | null): void {
     const base = fixed === null ? null : this.robot.baseIn(fixed);
-    if (this.viewing.follows && base) this.viewing.centreOn(base.translation[0], base.translation[1]);
-    if (!base && !this.#hasFitted && this.displays.all.some((display) => display.isVisible && display.bounds())) this.fit();
-    const { viewpoint } = this.viewing;
-    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    const { mode, viewpoint } = this.viewing;
+    const [width, height] = [this.element.clientWidth || 1, this.element.clientHeight || 1];
+    if (mode === "follow" && base) this.viewing.centreOn(base.translation[0], base.translation[1]);
+    const known = mode === "fit" ? this.known() : null;
+    if (known) this.viewing.fit(known, width, height);
     const reach = this.#isThreeDimensional ? 1.6 : 0.5;
     // A few lines more than are visible, so that a small move needs no new ones.
     const step = this.displays.grid.stepM;

@@ -7,18 +7,24 @@ const LOWEST_SCALE = 0.5;
 const HIGHEST_SCALE = 1000;
 /** Part of the picture that a fit fills. */
 const FILL = 0.86;
+/** Part of the way to the fitted view that a frame goes. */
+const EASE = 0.2;
+
+/** Fit and follow go on until the view is moved. */
+export type ViewMode = "fit" | "follow" | "free";
 
 export type Box = readonly [left: number, low: number, right: number, high: number];
 
 export class Viewing {
   readonly viewpoint: Viewpoint = { centre: [0, 0], scale: 40, azimuth: -Math.PI / 2, elevation: 0.9 };
-  #follows = true;
+  #mode: ViewMode = "fit";
+  #isPlaced = false;
   readonly #listeners = new Set<() => void>();
 
   constructor(private readonly invalidate: () => void) {}
 
-  get follows(): boolean {
-    return this.#follows;
+  get mode(): ViewMode {
+    return this.#mode;
   }
 
   onChange(callback: () => void): Dispose {
@@ -26,9 +32,9 @@ export class Viewing {
     return () => this.#listeners.delete(callback);
   }
 
-  follow(follows: boolean): void {
-    if (this.#follows === follows) return;
-    this.#follows = follows;
+  setMode(mode: ViewMode): void {
+    if (this.#mode === mode) return;
+    this.#mode = mode;
     this.#changed();
   }
 
@@ -40,7 +46,7 @@ export class Viewing {
 
   /** By metres of the ground. */
   pan(dx: number, dy: number): void {
-    this.follow(false);
+    this.setMode("free");
     this.viewpoint.centre = [this.viewpoint.centre[0] + dx, this.viewpoint.centre[1] + dy];
     this.#changed();
   }
@@ -48,9 +54,10 @@ export class Viewing {
   /** About a place, which stays under the pointer unless the view follows the robot. */
   zoom(factor: number, about: readonly [number, number] | null): void {
     const { viewpoint } = this;
+    if (this.#mode === "fit") this.#mode = "free";
     const scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, viewpoint.scale * factor));
     const real = viewpoint.scale / scale;
-    if (about && !this.#follows) {
+    if (about && this.#mode !== "follow") {
       const [x, y] = viewpoint.centre;
       viewpoint.centre = [about[0] + (x - about[0]) * real, about[1] + (y - about[1]) * real];
     }
@@ -64,12 +71,23 @@ export class Viewing {
     this.#changed();
   }
 
+  /** Move towards a view of the box; at once the first time. */
   fit([left, low, right, high]: Box, width: number, height: number): void {
-    this.#follows = false;
-    this.viewpoint.centre = [(left + right) / 2, (low + high) / 2];
-    const scale = FILL * Math.min(width / Math.max(right - left, 0.5), height / Math.max(high - low, 0.5));
-    this.viewpoint.scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, scale));
-    this.#changed();
+    const { viewpoint } = this;
+    const share = this.#isPlaced ? EASE : 1;
+    this.#isPlaced = true;
+    const most = FILL * Math.min(width / Math.max(right - left, 0.5), height / Math.max(high - low, 0.5));
+    const ratio = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, most)) / viewpoint.scale;
+    const [dx, dy] = [(left + right) / 2 - viewpoint.centre[0], (low + high) / 2 - viewpoint.centre[1]];
+    if (Math.abs(ratio - 1) < 0.002 && Math.hypot(dx, dy) * viewpoint.scale < 0.5) return;
+    viewpoint.scale *= ratio ** share;
+    viewpoint.centre = [viewpoint.centre[0] + dx * share, viewpoint.centre[1] + dy * share];
+    this.invalidate();
+  }
+
+  /** The next fit comes at once: what is drawn is another world. */
+  replace(): void {
+    this.#isPlaced = false;
   }
 
   #changed(): void {
