@@ -21,15 +21,8 @@ _WITHIN = 5  # headings tried within one bin, its limits included
 Masks = NDArray[np.uint64]
 
 
-def reachable(
-    lethal: NDArray[np.bool_],
-    spec: GridSpec,
-    footprint: Footprint,
-    start: Pose2,
-    *,
-    margin_m: float | None = None,
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return in which cells (H, W) the body fits, and which of them it can reach.
+class BodySpace:
+    """Poses of the body that no obstacle closes.
 
     Without a margin a cell is closed only if the body fits nowhere in it: what is not
     reached is certain. With a margin the body is placed at the cell's centre with the
@@ -42,25 +35,39 @@ def reachable(
         start: pose of the body in the map, always open.
         margin_m: clearance that the body keeps, or None.
     """
-    outline = make_outline(footprint)
-    reach = int(np.ceil((outline.radius_m + (margin_m or 0.0)) / spec.resolution))
-    stamp = np.zeros((2 * reach + 1, 2 * reach + 1), np.uint64)
-    if margin_m is None:
-        spread, least = np.pi / _HEADINGS, -spec.resolution * np.sqrt(0.5)
-    else:
-        spread, least = 0.0, margin_m
-    _fill_stamp(
-        stamp, outline.vertices, spec.resolution, spec.origin.yaw, spread, least
-    )
-    closed = np.zeros((spec.height + 2 * reach, spec.width + 2 * reach), np.uint64)
-    _close(closed, np.argwhere(lethal), np.ascontiguousarray(stamp[::-1, ::-1]))
-    inner = slice(reach, -reach or None)
-    open_ = np.ascontiguousarray(~closed[inner, inner])
-    row, column = spec.cell_of(start.x, start.y)
-    open_[row, column] = ~np.uint64(0)
-    reached = np.zeros(spec.shape, np.uint64)
-    _flood(open_, reached, row, column, np.empty(4 * lethal.size + 16, np.int64))
-    return open_ != 0, reached != 0
+
+    def __init__(
+        self,
+        lethal: NDArray[np.bool_],
+        spec: GridSpec,
+        footprint: Footprint,
+        start: Pose2,
+        *,
+        margin_m: float | None = None,
+    ) -> None:
+        outline = make_outline(footprint)
+        reach = int(np.ceil((outline.radius_m + (margin_m or 0.0)) / spec.resolution))
+        stamp = np.zeros((2 * reach + 1, 2 * reach + 1), np.uint64)
+        if margin_m is None:
+            spread, least = np.pi / _HEADINGS, -spec.resolution * np.sqrt(0.5)
+        else:
+            spread, least = 0.0, margin_m
+        _fill_stamp(
+            stamp, outline.vertices, spec.resolution, spec.origin.yaw, spread, least
+        )
+        closed = np.zeros((spec.height + 2 * reach, spec.width + 2 * reach), np.uint64)
+        _close(closed, np.argwhere(lethal), np.ascontiguousarray(stamp[::-1, ::-1]))
+        inner = slice(reach, -reach or None)
+        self._open = np.ascontiguousarray(~closed[inner, inner])
+        self.start = spec.cell_of(start.x, start.y)
+        self._open[self.start] = ~np.uint64(0)
+
+    def reached_from(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return (H, W) the cells that the body reaches from any of cells (N, 2)."""
+        reached = np.zeros_like(self._open)
+        stack = np.empty(4 * reached.size + len(cells) + 16, np.int64)
+        _flood(self._open, reached, np.ascontiguousarray(cells, np.int64), stack)
+        return np.asarray(reached != 0)
 
 
 @kernel
@@ -104,11 +111,14 @@ def _close(closed: Masks, cells: NDArray[np.int64], stamp: Masks) -> None:
 
 
 @kernel
-def _flood(open_: Masks, reached: Masks, row: int, column: int, stack: Any) -> None:
+def _flood(open_: Masks, reached: Masks, cells: NDArray[np.int64], stack: Any) -> None:
     """Reach neighbouring cells with the same heading, and neighbouring headings."""
     height, width = open_.shape
-    reached[row, column] = open_[row, column]
-    stack[0], count = row * width + column, 1
+    count = cells.shape[0]
+    for n in range(count):
+        row, column = cells[n, 0], cells[n, 1]
+        reached[row, column] = open_[row, column]
+        stack[n] = row * width + column
     while count > 0:
         count -= 1
         row, column = stack[count] // width, stack[count] % width

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from navette.geometry import OMNI, Footprint, Pose2
 from navette.navigation.grids import (
     NO_DISCS,
+    UNKNOWN,
     CellWindow,
     GridSpec,
     Layer,
@@ -18,7 +19,7 @@ from navette.navigation.grids import (
     make_outline,
     unseen_mask,
 )
-from navette.navigation.planning.body_space import reachable
+from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import CloseMap, close_map
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
@@ -207,7 +208,8 @@ class Planner:
             start, Target(goal.x, goal.y, None, reach), None
         )
         nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
-        reachable(np.zeros(spec.shape, np.bool_), spec, self.footprint, start)
+        space = BodySpace(np.zeros(spec.shape, np.bool_), spec, self.footprint, start)
+        space.reached_from(np.array([space.start]))
 
     @property
     def body(self) -> BodyShape:
@@ -349,16 +351,22 @@ class Planner:
         goal: Goal,
         margin_m: float | None = None,
     ) -> Outcome | None:
-        """Return why no motion of the body leads to the goal; None if one may."""
-        lethal = closer.occupancy >= self.params.lethal_cost
-        fits, reached = reachable(
-            lethal, closer.spec, self.footprint, start, margin_m=margin_m
-        )
-        cells, _ = cells_near(closer.spec, (goal.x, goal.y), self._reach_m)
+        """Return why no motion of the body leads to the goal; None if one may.
+
+        A goal lies inside an obstacle if obstacles enclose all space around it that the
+        body could move in, and no beam has seen any of that.
+        """
+        occupancy, spec = closer.occupancy, closer.spec
+        lethal = occupancy >= self.params.lethal_cost
+        space = BodySpace(lethal, spec, self.footprint, start, margin_m=margin_m)
+        cells, _ = cells_near(spec, (goal.x, goal.y), self._reach_m)
         there = tuple(cells.T)
-        if reached[there].any():
+        if space.reached_from(np.array([space.start]))[there].any():
             return None
-        return Outcome.NO_PATH if fits[there].any() else Outcome.GOAL_BLOCKED
+        around = space.reached_from(cells)
+        is_seen = (occupancy[around] != UNKNOWN).any()
+        rim = around[[0, -1]].any() or around[:, [0, -1]].any()
+        return Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
 
     def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
         """Plan with the grid search alone and the full margin; None without a path.

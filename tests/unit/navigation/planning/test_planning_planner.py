@@ -109,6 +109,29 @@ def test_goal_deep_in_an_obstacle_is_blocked() -> None:
     assert not len(plan.poses)
 
 
+@pytest.mark.parametrize(
+    ("seen_inside", "outcome"),
+    [(False, Outcome.GOAL_BLOCKED), (True, Outcome.NO_PATH)],
+)
+def test_a_goal_in_a_box_is_blocked_unless_its_inside_was_seen(
+    seen_inside: bool, outcome: Outcome
+) -> None:
+    """Only the faces of a box are in the map; the body would fit inside."""
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 7), (1.5, 4.5))
+    fill(occupancy, spec, (4.1, 6.9), (1.6, 4.4), 0 if seen_inside else -1)
+    plan = planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(5.5, 3))
+    assert plan.outcome is outcome
+
+
+def test_an_unseen_goal_outside_a_closed_room_has_no_path() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 4.1), (0, 6))
+    fill(occupancy, spec, (4.1, 8), (0, 6), -1)
+    plan = planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(6, 3))
+    assert plan.outcome is Outcome.NO_PATH
+
+
 def test_a_walled_off_goal_has_no_path() -> None:
     occupancy, spec = empty_map(8, 6)
     fill(occupancy, spec, (4, 4.2), (0, 6))
