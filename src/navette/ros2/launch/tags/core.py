@@ -21,10 +21,10 @@ from navette.ros2.packages.launch.actions import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
-from navette.ros2.packages.launch.conditions import IfCondition, UnlessCondition
+from navette.ros2.packages.launch.conditions import condition_of
 from navette.ros2.packages.launch.frontend import (
     Element,
-    expose_action,
+    makes,
     parse_elements,
     parse_substitution,
 )
@@ -33,35 +33,25 @@ from navette.ros2.packages.launch.launch_description_entity import (
 )
 
 
-def condition_of(element: Element) -> dict[str, Any]:
-    """Return ``condition=`` for the attributes ``if`` and ``unless``."""
-    holds, fails = element.parts("if"), element.parts("unless")
-    if holds is not None and fails is not None:
-        raise element.error("attributes 'if' and 'unless' are mutually exclusive")
-    if holds is not None:
-        return {"condition": IfCondition(holds)}
-    return {} if fails is None else {"condition": UnlessCondition(fails)}
-
-
-def expose_simple_action(
+def makes_simple_action(
     tag: str, action: Callable[..., Action], *attributes: str
 ) -> None:
     """Register an action whose arguments are required attributes, in order."""
 
-    @expose_action(tag)
+    @makes(tag)
     def make(element: Element) -> LaunchDescriptionEntity:
         values = [element.need_parts(name) for name in attributes]
         return action(*values, **condition_of(element))
 
 
-expose_simple_action("let", SetLaunchConfiguration, "name", "value")
-expose_simple_action("unset", UnsetLaunchConfiguration, "name")
-expose_simple_action("set_env", SetEnvironmentVariable, "name", "value")
-expose_simple_action("unset_env", UnsetEnvironmentVariable, "name")
-expose_simple_action("reset_env", ResetEnvironment)
+makes_simple_action("let", SetLaunchConfiguration, "name", "value")
+makes_simple_action("unset", UnsetLaunchConfiguration, "name")
+makes_simple_action("set_env", SetEnvironmentVariable, "name", "value")
+makes_simple_action("unset_env", UnsetEnvironmentVariable, "name")
+makes_simple_action("reset_env", ResetEnvironment)
 
 
-@expose_action("arg")
+@makes("arg")
 def argument(element: Element) -> LaunchDescriptionEntity:
     choices = [choice.need("value") for choice in element.elements("choice")]
     return DeclareLaunchArgument(
@@ -73,7 +63,7 @@ def argument(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("append_env")
+@makes("append_env")
 def append_environment(element: Element) -> LaunchDescriptionEntity:
     options: dict[str, Any] = {
         name: parts
@@ -88,7 +78,7 @@ def append_environment(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("reset")
+@makes("reset")
 def reset(element: Element) -> LaunchDescriptionEntity:
     kept = {
         keep.need("name"): keep.need_parts("value") for keep in element.elements("keep")
@@ -96,7 +86,7 @@ def reset(element: Element) -> LaunchDescriptionEntity:
     return ResetLaunchConfigurations(kept, **condition_of(element))
 
 
-@expose_action("group")
+@makes("group")
 def group(element: Element) -> LaunchDescriptionEntity:
     scoped, forwarding = element.flag("scoped"), element.flag("forwarding")
     kept = {
@@ -111,7 +101,7 @@ def group(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("include")
+@makes("include")
 def include(element: Element) -> LaunchDescriptionEntity:
     arguments = []
     for tag in ("arg", "let"):
@@ -123,7 +113,7 @@ def include(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("log")
+@makes("log")
 def log(element: Element) -> LaunchDescriptionEntity:
     level = element.parts("level")
     if level is not None:
@@ -133,13 +123,13 @@ def log(element: Element) -> LaunchDescriptionEntity:
     return LogInfo(msg=element.need_parts("message"), **condition_of(element))
 
 
-@expose_action("shutdown")
+@makes("shutdown")
 def shutdown(element: Element) -> LaunchDescriptionEntity:
     reason = element.parts("reason") or parse_substitution("reason not given")
     return Shutdown(reason=reason, **condition_of(element))
 
 
-@expose_action("timer")
+@makes("timer")
 def timer(element: Element) -> LaunchDescriptionEntity:
     return TimerAction(
         period=element.need_parts("period"),
@@ -148,7 +138,7 @@ def timer(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("executable")
+@makes("executable")
 def executable(element: Element) -> LaunchDescriptionEntity:
     words = element.need("cmd")
     arguments = element.text("args")

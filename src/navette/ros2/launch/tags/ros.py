@@ -3,15 +3,15 @@
 from typing import Any
 
 from navette.ros2.launch.tags.core import (
-    condition_of,
     execution_options,
-    expose_simple_action,
+    makes_simple_action,
     split_words,
 )
+from navette.ros2.packages.launch.conditions import condition_of
 from navette.ros2.packages.launch.frontend import (
     SUBSTITUTIONS,
     Element,
-    expose_action,
+    makes,
     parse_elements,
 )
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -66,15 +66,15 @@ _TYPES: dict[str, Any] = {
 }
 
 
-expose_simple_action("push_ros_namespace", PushRosNamespace, "namespace")
-expose_simple_action("push-ros-namespace", PushRosNamespace, "namespace")
-expose_simple_action("set_use_sim_time", SetUseSimTime, "value")
-expose_simple_action("set_parameters_from_file", SetParametersFromFile, "filename")
-expose_simple_action("set_remap", SetRemap, "from", "to")
-expose_simple_action("set_ros_log_dir", SetROSLogDir, "new_log_dir")
+makes_simple_action("push_ros_namespace", PushRosNamespace, "namespace")
+makes_simple_action("push-ros-namespace", PushRosNamespace, "namespace")
+makes_simple_action("set_use_sim_time", SetUseSimTime, "value")
+makes_simple_action("set_parameters_from_file", SetParametersFromFile, "filename")
+makes_simple_action("set_remap", SetRemap, "from", "to")
+makes_simple_action("set_ros_log_dir", SetROSLogDir, "new_log_dir")
 
 
-@expose_action("node")
+@makes("node")
 def node(element: Element) -> LaunchDescriptionEntity:
     return Node(
         package=element.parts("pkg"),
@@ -85,7 +85,7 @@ def node(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("lifecycle_node")
+@makes("lifecycle_node")
 def lifecycle_node(element: Element) -> LaunchDescriptionEntity:
     return LifecycleNode(
         package=element.parts("pkg"),
@@ -97,7 +97,7 @@ def lifecycle_node(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("ros_timer")
+@makes("ros_timer")
 def ros_timer(element: Element) -> LaunchDescriptionEntity:
     return RosTimer(
         period=element.need_parts("period"),
@@ -106,7 +106,7 @@ def ros_timer(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("node_container")
+@makes("node_container")
 def node_container(element: Element) -> LaunchDescriptionEntity:
     return ComposableNodeContainer(
         package=element.need_parts("pkg"),
@@ -118,7 +118,7 @@ def node_container(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("load_composable_node")
+@makes("load_composable_node")
 def load_composable_node(element: Element) -> LaunchDescriptionEntity:
     return LoadComposableNodes(
         target_container=element.need_parts("target"),
@@ -127,7 +127,7 @@ def load_composable_node(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("set_parameter")
+@makes("set_parameter")
 def set_parameter(element: Element) -> LaunchDescriptionEntity:
     return SetParameter(
         element.need_parts("name"), _value(element), **condition_of(element)

@@ -1,6 +1,9 @@
 """Base class of actions."""
 
+from typing import Any
+
 from navette.ros2.packages.launch.condition import Condition
+from navette.ros2.packages.launch.conditions import ConditionalElement, condition_of
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -21,6 +24,16 @@ class Action(LaunchDescriptionEntity):
             )
         self.condition = condition
         self.origin = caller_location()
+
+    @classmethod
+    def parse(
+        cls, entity: ConditionalElement, parser: object
+    ) -> tuple[type["Action"], dict[str, Any]]:
+        """Return the class and its arguments by the attributes ``if`` and ``unless``.
+
+        Classes for ``expose_action`` add the arguments of their own attributes.
+        """
+        return cls, dict(condition_of(entity))
 
     def describe(self) -> str:
         text = describe_first_parts(self)

@@ -1,5 +1,7 @@
 """Conditions on substitutions and on launch configurations."""
 
+from typing import Any, Protocol
+
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.errors import InvalidConditionExpressionError
 from navette.ros2.packages.launch.launch_context import LaunchContext
@@ -10,6 +12,7 @@ from navette.ros2.packages.launch.substitution import (
 from navette.ros2.packages.launch.typed import parse_bool
 
 __all__ = [
+    "condition_of",
     "IfCondition",
     "InvalidConditionExpressionError",
     "LaunchConfigurationEquals",
@@ -17,6 +20,24 @@ __all__ = [
     "UnlessCondition",
     "evaluate_condition_expression",
 ]
+
+
+class ConditionalElement(Protocol):
+    """An element of a launch file that may have ``if`` or ``unless``."""
+
+    def parts(self, name: str, /) -> Parts | None: ...
+
+    def error(self, reason: str, /) -> Exception: ...
+
+
+def condition_of(element: ConditionalElement) -> dict[str, Any]:
+    """Return ``condition=`` for the attributes ``if`` and ``unless``."""
+    holds, fails = element.parts("if"), element.parts("unless")
+    if holds is not None and fails is not None:
+        raise element.error("attributes 'if' and 'unless' are mutually exclusive")
+    if holds is not None:
+        return {"condition": IfCondition(holds)}
+    return {} if fails is None else {"condition": UnlessCondition(fails)}
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Parts) -> bool:

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from navette.errors import FileFormatError
+from navette.ros2.packages.launch.frontend.attribute_types import converted
 from navette.ros2.packages.launch.frontend.grammar import parse_substitution
 from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.typed import FALSE, TRUE
@@ -29,8 +30,14 @@ class Element:
     line: int
     attributes: dict[str, Any] = field(default_factory=dict)
     children: list["Element"] = field(default_factory=list)
+    parent: "Element | None" = None
     _seen: set[str] = field(default_factory=set)
     _all_seen: bool = False
+
+    def add(self, child: "Element") -> None:
+        """Append a child."""
+        child.parent = self
+        self.children.append(child)
 
     @property
     def origin(self) -> str:
@@ -95,6 +102,58 @@ class Element:
         """Return the children not read by tag so far."""
         self._all_seen = True
         return [c for c in self.children if f"<{c.tag}>" not in self._seen]
+
+    @property
+    def type_name(self) -> str:
+        """ROS 2's name of the tag."""
+        return self.tag
+
+    def get_attr(
+        self,
+        name: str,
+        *,
+        data_type: Any = str,
+        optional: bool = False,
+        can_be_str: bool = True,
+    ) -> Any:
+        """Return an attribute, as extensions that are written for ROS 2 read it.
+
+        Args:
+            data_type: see :func:`converted`; ``list[Entity]`` returns the children of
+                that tag. In XML, ``NAME-sep`` holds the separator of a list's items.
+            optional: return None where the attribute is missing.
+            can_be_str: text with substitutions is accepted for any type.
+
+        Raises:
+            AttributeError: the attribute is missing.
+            TypeError: it has another type.
+        """
+        if get_args(data_type) == (Element,):
+            value: Any = self.elements(name) or None
+        else:
+            value = self.value(name)
+            separator = self.value(f"{name}-sep")
+            if value is not None and separator is not None:
+                value = str(value).split(str(separator))
+        if value is None:
+            if optional:
+                return None
+            raise AttributeError(
+                f"Attribute {name!r} of type {data_type} not found in {self.tag!r}"
+            )
+        if get_args(data_type) == (Element,):
+            return value
+        try:
+            return converted(value, data_type, can_be_str=can_be_str)
+        except TypeError as error:
+            raise TypeError(f"Attribute {name!r} of {self.tag!r}: {error}") from None
+
+    def assert_entity_completely_parsed(self) -> None:
+        """Raise ValueError for attributes and children that were not read."""
+        try:
+            self.finish()
+        except FileFormatError as error:
+            raise ValueError(str(error)) from error
 
     def finish(self) -> None:
         """Raise for attributes and children that were not read."""

@@ -37,14 +37,14 @@ EXTENSIONS = ["navette.ros2.launch.tags"]
 MakerT = TypeVar("MakerT", bound=EntityMaker)
 
 
-def expose_action(tag: str) -> Callable[[MakerT], MakerT]:
+def makes(tag: str) -> Callable[[MakerT], MakerT]:
     """Register a function as the factory of a tag's entity."""
 
-    def expose(maker: MakerT) -> MakerT:
+    def register(maker: MakerT) -> MakerT:
         ACTIONS[tag] = maker
         return maker
 
-    return expose
+    return register
 
 
 def parse_launch_file(path: Path, ending: str | None = None) -> LaunchDescription:
@@ -62,7 +62,11 @@ def parse_launch_file(path: Path, ending: str | None = None) -> LaunchDescriptio
 
 def parse_launch_text(text: bytes, path: Path, ending: str) -> LaunchDescription:
     """Parse the text of a launch file."""
-    root = FORMATS[ending](text, path)
+    return parse_root(FORMATS[ending](text, path))
+
+
+def parse_root(root: Element) -> LaunchDescription:
+    """Create the description of a launch file's outermost element."""
     if root.tag != "launch":
         raise root.error("expected <launch> as the outermost tag")
     root.value("version")
@@ -73,12 +77,17 @@ def parse_launch_text(text: bytes, path: Path, ending: str) -> LaunchDescription
 
 def parse_elements(elements: list[Element]) -> list[LaunchDescriptionEntity]:
     """Create the entities of elements, in order."""
+    return [parse_element(element) for element in elements]
+
+
+def parse_element(element: Element) -> LaunchDescriptionEntity:
+    """Create the entity of an element.
+
+    Raises:
+        FileFormatError: unknown tag, or what is wrong with its attributes.
+    """
     for name in EXTENSIONS:
         importlib.import_module(name)
-    return [_parse(element) for element in elements]
-
-
-def _parse(element: Element) -> LaunchDescriptionEntity:
     if element.tag not in ACTIONS:
         raise element.error(f"unknown tag; known: {', '.join(sorted(ACTIONS))}")
     try:

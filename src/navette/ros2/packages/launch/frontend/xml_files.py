@@ -17,7 +17,7 @@ class _Elements:
         return Element(tag, self.path, line, dict(attributes))
 
     def add(self, parent: Element, child: Element) -> None:
-        parent.children.append(child)
+        parent.add(child)
 
     def text(self, node: Element, text: str) -> None:
         if text.strip():

@@ -44,7 +44,7 @@ class _Reader:
         """Convert ``tag: {attributes and lists}`` or ``tag: [children]``."""
         element = Element(tag, self._path, line)
         if isinstance(node, yaml.SequenceNode):
-            element.children = self._children(element, node)
+            self._add_children(element, node)
             return element
         if not isinstance(node, yaml.MappingNode):
             if node.value in ("", None):
@@ -56,19 +56,18 @@ class _Reader:
 
     def _add(self, element: Element, name: str, value: yaml.Node) -> None:
         if name == _CHILDREN and isinstance(value, yaml.SequenceNode):
-            element.children += self._children(element, value)
+            self._add_children(element, value)
         elif self._holds_mappings(value) or isinstance(value, yaml.MappingNode):
             is_list = isinstance(value, yaml.SequenceNode)
             for item in value.value if is_list else [value]:
                 line = int(item.start_mark.line) + 1
-                element.children.append(self.element(name, item, line))
+                element.add(self.element(name, item, line))
         elif name in element.attributes:
             raise element.error(f"attribute {name!r} is given more than once")
         else:
             element.attributes[name] = self._scalar(element, name, value)
 
-    def _children(self, element: Element, node: yaml.SequenceNode) -> list[Element]:
-        found = []
+    def _add_children(self, element: Element, node: yaml.SequenceNode) -> None:
         for item in node.value:
             if not isinstance(item, yaml.MappingNode) or len(item.value) != 1:
                 raise FileFormatError(
@@ -78,8 +77,7 @@ class _Reader:
                 )
             key, value = item.value[0]
             line = int(key.start_mark.line) + 1
-            found.append(self.element(str(key.value), value, line))
-        return found
+            element.add(self.element(str(key.value), value, line))
 
     @staticmethod
     def _holds_mappings(node: yaml.Node) -> bool:
