@@ -48,6 +48,8 @@ DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
 COSTMAP_POINTS = StackTopic("/costmap/points", "sensor_msgs/msg/PointCloud2")
 MAP_POINTS = StackTopic("/map/points", "sensor_msgs/msg/PointCloud2", 1, True)
+STATIC_MAP = StackTopic("/static_map", "nav_msgs/msg/OccupancyGrid", 1, True)
+TRAJECTORY = StackTopic("/trajectory", "nav_msgs/msg/Path", 1, True)
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
 LOCAL_COSTMAP = StackTopic(
     "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True

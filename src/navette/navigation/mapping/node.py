@@ -98,6 +98,10 @@ class MapMemoryNode(StageNode):
             "map of everything seen so far",
         ),
         Output.of(
+            topics.STATIC_MAP,
+            "the loaded map, as it is; only if one is loaded",
+        ),
+        Output.of(
             topics.GLOBAL_COSTMAP,
             "the map, under Nav2's name",
         ),
@@ -276,6 +280,9 @@ class MapMemoryNode(StageNode):
         """Replace the map by a loaded one; scans change it from now on."""
         self._memory.load(cells, spec)
         self._gate.reset()
+        frame_id, now_ns = self.params.map_frame, self._now_ns()
+        known = grid_to_message(cells, spec, frame_id, now_ns)
+        self.publish(topics.STATIC_MAP.name, known)
         self._publish_map(self._now_ns())
 
     def _load_file(self) -> None:

@@ -219,12 +219,20 @@ class Navigator:
         self._finish(Phase.REACHED)
         return True
 
-    def step(self, robot: RobotMotion | None, now_ns: int, *, stale: bool) -> None:
+    def step(
+        self,
+        robot: RobotMotion | None,
+        now_ns: int,
+        *,
+        stale: bool,
+        lost: bool = False,
+    ) -> None:
         """Look after the goal.
 
         Args:
             robot: newest state; None before the first.
             stale: whether that is too old to drive by.
+            lost: whether its pose is not that of the robot.
         """
         if self._goal is None or self.is_paused:
             return
@@ -233,7 +241,10 @@ class Navigator:
             self._compared_ns = now_ns
         self._stepped_ns = now_ns
         self.planner.hold(self._goal)
-        if robot is None or stale:
+        if lost:
+            self._drop_path()
+            self._set_status(Outcome.LOST)
+        elif robot is None or stale:
             self._drop_path()
             self._set_status(Phase.WAITING_FOR_ODOMETRY if robot is None
                       else Outcome.STALE_ODOMETRY)  # fmt: skip

@@ -70,7 +70,9 @@ _STALLED = "stalled"
 # Age of the moving obstacles from which they are obsolete.
 _MOVING_TIMEOUT_S = 0.5
 # Temporary failures; all others end the goal.
-_TEMPORARY = (Outcome.STALE_ODOMETRY,)
+_TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
+# Status of a localization node that has the pose.
+_LOCALIZED = "localized"
 
 
 class PlannerNode(StageNode):
@@ -99,6 +101,12 @@ class PlannerNode(StageNode):
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
+        ),
+        Input.of(
+            topics.LOCALIZATION_STATUS,
+            "whether the pose is known; without it the robot counts as localized",
+            callback="on_localization_status",
+            checks_contents=False,
         ),
         Input.of(
             topics.GOAL_POINT,
@@ -157,6 +165,7 @@ class PlannerNode(StageNode):
         self._step_is_due = False
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
+        self._is_lost = False
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._map_ns = 0
@@ -250,10 +259,18 @@ class PlannerNode(StageNode):
             self._when_stepped(lambda: self._navigator.note_jump())
             self.on_timer()
         robot = self._robot()
-        if robot is None or self._stepping is not None:
+        if robot is None or self._is_lost or self._stepping is not None:
             return
         if self._navigator.note(robot, self._now_ns):
             self._publish_path_and_status()
+
+    def on_localization_status(self, msg: DiagnosticStatus) -> None:
+        """Stop a robot that is lost; continue when it is localized again."""
+        is_lost = msg.message != _LOCALIZED
+        if is_lost != self._is_lost:
+            self._is_lost = is_lost
+            self._drop_step()
+            self.on_timer()
 
     def on_goal_point(self, msg: PointStamped) -> None:
         """Navigate to a point, with any heading, if no missions forward it."""
@@ -345,8 +362,9 @@ class PlannerNode(StageNode):
         self._navigator.planner.set_moving(moving)
         self._stepping = stepping = self._navigator.copy()
         robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
+        lost = self._is_lost
         self._worker.run(
-            lambda: stepping.step(robot, now_ns, stale=stale),
+            lambda: stepping.step(robot, now_ns, stale=stale, lost=lost),
             lambda _: self._finish_step(stepping),
             is_dropped=lambda: self._stepping is not stepping,
         )
@@ -429,7 +447,7 @@ class PlannerNode(StageNode):
         return None if self._map is None else self._navigator.planner
 
     def _fresh_pose(self) -> Pose2 | None:
-        return None if self._is_stale() else self._tracker.latest
+        return None if self._is_lost or self._is_stale() else self._tracker.latest
 
     def _is_stale(self) -> bool:
         if self._odometry_ns is None:

@@ -28,6 +28,9 @@ class Outcome(StrEnum):
     TIMED_OUT = "timed_out"
     STUCK = "stuck"
     STALE_ODOMETRY = "stale_odometry"
+    LOST = "lost"
+    """Localization reports that the pose is not known."""
+
     CANCELED = "canceled"
 
     @property

@@ -11,6 +11,7 @@ from typing import Any
 from navette.errors import UnknownNameError
 from navette.geometry import Pose2
 from navette.msgs import topics
+from navette.navigation.localization.amcl.node import AmclNode
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.navigation.localization.localizer.node import LocalizerNode
 from navette.runtime import StageNode
@@ -20,6 +21,7 @@ LOCALIZATIONS: Mapping[str, tuple[tuple[str, type[StageNode]], ...]] = MappingPr
     {
         "truth": (("localizer", LocalizerNode),),
         "odometry": (("localizer", LocalizerNode),),
+        "amcl": (("amcl", AmclNode),),
     }
 )
 """Parameter ``localization`` of the simulator → name and class of the nodes."""
@@ -58,6 +60,16 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "imu0": topics.IMU.name,
             "imu0_config": [name in ("yaw", "vyaw") for name in _ORDER],
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
+        },
+        "amcl": {
+            "global_frame_id": sim.map_frame,
+            "odom_frame_id": sim.odometry_frame,
+            "base_frame_id": sim.base_frame,
+            "seed": sim.seed,
+            "set_initial_pose": True,
+            "initial_pose.x": x,
+            "initial_pose.y": y,
+            "initial_pose.yaw": yaw,
         },
     }
     return {name: values[name] for name, _ in localization_nodes(sim) if name in values}

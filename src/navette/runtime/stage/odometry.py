@@ -20,6 +20,8 @@ _LONGEST_PREDICTION_S = 0.25
 _CARRIED_M = 1.0
 # A correction of map_T_odom that moves the robot further is a jump.
 _JUMP_M, _JUMP_RAD = 0.15, 0.1
+# Time without map_T_odom after which that is reported.
+_STARTING_NS = 2_000_000_000
 
 
 class PoseTracker:
@@ -70,6 +72,7 @@ class PoseTracker:
         )
         self._moving_listener: TransformListener | None = None
         self._child_T_base: tuple[str, Pose2] | None = None
+        self._waits_since_ns: int | None = None
         self._newest_transform: tuple[Transform3, Pose2] | None = None
 
     @property
@@ -247,12 +250,20 @@ class PoseTracker:
                 self._moving_listener = TransformListener(
                     self.buffer, self._node, on_invalid=self._on_invalid
                 )
-            self._drop("unknown_frame", str(error))
+            self._await_map(error)
             return None
         known = self._newest_transform
         if known is None or known[0] is not transform:
             self._newest_transform = known = transform, transform.to_pose2()
         return known[1]
+
+    def _await_map(self, error: TransformException) -> None:
+        """Report a missing map_T_odom, unless its publisher may be starting."""
+        now_ns = self._node.get_clock().now().nanoseconds
+        if self._waits_since_ns is None or now_ns < self._waits_since_ns:
+            self._waits_since_ns = now_ns
+        if now_ns - self._waits_since_ns >= _STARTING_NS:
+            self._drop("unknown_frame", str(error))
 
     def _static(self, target: str, source: str) -> Transform3 | None:
         if target == source:

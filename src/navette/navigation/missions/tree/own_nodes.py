@@ -102,6 +102,7 @@ ERROR_CODES = {
     "no_path": 208,
     "goal_not_finite": 200,
     "stale_odometry": 102,
+    "lost": 102,
     "stuck": 105,
     "timed_out": 107,
 }

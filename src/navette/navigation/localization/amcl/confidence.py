@@ -1,0 +1,76 @@
+"""Whether the robot counts as localized: by the match of the scan and the spread."""
+
+from enum import StrEnum
+
+from navette.navigation.localization.amcl.params import AmclParams
+
+# Least weight of the heaviest cluster of a robot that is localized; below the second
+# value another place is as likely.
+_LEAST_SHARE, _LOST_SHARE = 0.85, 0.5
+
+
+class LocalizationState(StrEnum):
+    """Published states of a localization node."""
+
+    NO_MAP = "no_map"
+    LOCALIZING = "localizing"
+    """The pose is searched for on the whole map; the robot has to move."""
+
+    LOCALIZED = "localized"
+    LOST = "lost"
+    """The pose was known, and no longer fits what the scanner sees."""
+
+
+class ConfidenceMonitor:
+    """State with hysteresis: lost after a time of poor match, localized when good."""
+
+    def __init__(self, params: AmclParams) -> None:
+        self._params = params
+        self.state = LocalizationState.LOCALIZING
+        self._poor_since_ns: int | None = None
+        self._good = 0
+
+    def restart(self, *, is_known: bool) -> None:
+        """Restart at a given pose, or without one."""
+        self.state = (
+            LocalizationState.LOCALIZED if is_known else LocalizationState.LOCALIZING
+        )
+        self._poor_since_ns, self._good = None, 0
+
+    def update(
+        self, match: float, stddev_m: float, share: float, now_ns: int
+    ) -> LocalizationState:
+        """Return the state.
+
+        Args:
+            match: share of the beams that end at obstacles of the map.
+            stddev_m: of the position.
+            share: weight of the heaviest cluster.
+            now_ns: time of the scan.
+        """
+        params = self._params
+        if self.state is LocalizationState.LOCALIZED:
+            poor = (
+                match < params.lost_match
+                or stddev_m > params.lost_stddev_m
+                or share < _LOST_SHARE
+            )
+            if not poor:
+                self._poor_since_ns = None
+            elif self._poor_since_ns is None:
+                self._poor_since_ns = now_ns
+            if (
+                self._poor_since_ns is not None
+                and now_ns - self._poor_since_ns >= params.lost_time_s * 1e9
+            ):
+                self.state, self._good = LocalizationState.LOST, 0
+            return self.state
+        good = (
+            match >= params.localized_match
+            and stddev_m <= params.localized_stddev_m
+            and share >= _LEAST_SHARE
+        )
+        self._good = self._good + 1 if good else 0
+        if self._good >= 3:
+            self.state, self._poor_since_ns = LocalizationState.LOCALIZED, None
+        return self.state

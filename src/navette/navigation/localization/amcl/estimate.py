@@ -1,0 +1,77 @@
+"""Pose and covariance of the heaviest cluster of particles."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+
+_BIN_M, _BIN_RAD = 0.5, math.radians(20.0)
+_RADIUS_M, _RADIUS_RAD = 0.75, 0.5
+_ROUNDS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class ParticleEstimate:
+    """The heaviest cluster.
+
+    Attributes:
+        pose: mean x, y, yaw.
+        covariance: (3, 3) of x, y, yaw.
+        share: weight of the cluster, 0 … 1.
+    """
+
+    pose: Pose2
+    covariance: NDArray[np.float64]
+    share: float
+
+    @property
+    def stddev_m(self) -> float:
+        """Standard deviation of the position along the worst axis, m."""
+        return float(
+            math.sqrt(max(0.0, np.linalg.eigvalsh(self.covariance[:2, :2])[1]))
+        )
+
+
+def heaviest_cluster(
+    particles: NDArray[np.float64], weights: NDArray[np.float64]
+) -> ParticleEstimate:
+    """Return mean, covariance and weight of the particles around the heaviest bin.
+
+    Args:
+        particles: (N, 3) x, y, yaw.
+        weights: (N,) with sum 1.
+    """
+    bins = np.floor(particles / (_BIN_M, _BIN_M, _BIN_RAD)).astype(np.int64)
+    _, of_bin = np.unique(bins, axis=0, return_inverse=True)
+    mass = np.bincount(of_bin.ravel(), weights)
+    inside = of_bin.ravel() == int(mass.argmax())
+    mean = _mean(particles[inside], weights[inside])
+    for _ in range(_ROUNDS):
+        away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])
+        turn = np.abs(_wrapped(particles[:, 2] - mean[2]))
+        inside = (away < _RADIUS_M) & (turn < _RADIUS_RAD)
+        mean = _mean(particles[inside], weights[inside])
+    own, mass_inside = weights[inside], float(weights[inside].sum())
+    off = particles[inside] - mean
+    off[:, 2] = _wrapped(off[:, 2])
+    covariance = (off * own[:, None]).T @ off / mass_inside
+    return ParticleEstimate(Pose2(*mean.tolist()), covariance, mass_inside)
+
+
+def _mean(
+    particles: NDArray[np.float64], weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    x, y = (particles[:, :2] * weights[:, None]).sum(axis=0) / weights.sum()
+    yaw = math.atan2(
+        float((np.sin(particles[:, 2]) * weights).sum()),
+        float((np.cos(particles[:, 2]) * weights).sum()),
+    )
+    return np.array([x, y, yaw])
+
+
+def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    wrapped: NDArray[np.float64] = (angles + math.pi) % (2 * math.pi) - math.pi
+    return wrapped

@@ -1,0 +1,248 @@
+"""Likelihood field of a map: how well scans fit it, from any pose.
+
+Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), section 6.4: a beam that ends at
+distance d from the nearest obstacle of the map has likelihood
+``z_hit · exp(−d² / 2σ²) + z_rand``, here with ``z_hit + z_rand = 1``. Beams without an
+echo are not used.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.files.kernels import kernel
+from navette.navigation.grids import GridSpec
+from navette.navigation.grids.distance import distance_field
+
+# Values of map_server from which a cell is an obstacle, and up to which it is free.
+OCCUPIED, FREE_UP_TO = 65, 25
+
+Points = NDArray[np.float64]
+Poses = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LikelihoodField:
+    """A map for scoring poses.
+
+    Attributes:
+        spec: geometry of the grids in the map frame.
+        distance: (H, W) to the nearest obstacle, m.
+        log_likelihood: (H, W) of a beam that ends in a cell; at most 0.
+        outside: log likelihood of a beam that ends outside the map.
+        free: (N, 2) row, column of the free cells.
+    """
+
+    spec: GridSpec
+    distance: NDArray[np.float32]
+    log_likelihood: NDArray[np.float32]
+    outside: float
+    free: NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls,
+        cells: NDArray[np.int8],
+        spec: GridSpec,
+        *,
+        sigma: float,
+        random: float,
+        reach_m: float,
+    ) -> "LikelihoodField":
+        """Make the field of a map.
+
+        Args:
+            cells: (H, W) -1 unknown, 0 free … 100 occupied.
+            spec: their geometry.
+            sigma: standard deviation of a beam's end, m.
+            random: share of beams that hit something else, 0 … 1.
+            reach_m: distance beyond which all places are equal.
+        """
+        occupied = (cells >= OCCUPIED).astype(np.uint8)
+        distance = distance_field(occupied, spec.resolution, reach_m)
+        free = np.argwhere((cells >= 0) & (cells <= FREE_UP_TO))
+        return cls(
+            spec,
+            distance,
+            _log_likelihood(distance, sigma, random),
+            _log_likelihood(np.array([reach_m]), sigma, random).item(),
+            free,
+        )
+
+    def blurred(self, sigma: float, random: float) -> "LikelihoodField":
+        """Return the field of another standard deviation, for a coarse search."""
+        reach = float(self.distance.max(initial=0.0))
+        return LikelihoodField(
+            self.spec,
+            self.distance,
+            _log_likelihood(self.distance, sigma, random),
+            _log_likelihood(np.array([reach]), sigma, random).item(),
+            self.free,
+        )
+
+    def scores(self, poses: Poses, points: Points) -> NDArray[np.float64]:
+        """Return the mean log likelihood (N,) of a scan's points from poses.
+
+        Args:
+            poses: (N, 3) x, y, yaw of the base in the map.
+            points: (M, 2) ends of the beams in the base frame, m.
+        """
+        found = np.zeros(len(poses))
+        if len(points):
+            _scores(
+                self.log_likelihood, self.outside, *_frame(self.spec),
+                np.ascontiguousarray(poses), np.ascontiguousarray(points), found,
+            )  # fmt: skip
+        return found
+
+    def share_within(
+        self, pose: NDArray[np.float64], points: Points, within_m: float
+    ) -> float:
+        """Return the share of points at most ``within_m`` from an obstacle; 0…1."""
+        if not len(points):
+            return 0.0
+        return float(
+            _share_within(
+                self.distance, *_frame(self.spec), np.asarray(pose, np.float64),
+                np.ascontiguousarray(points), within_m,
+            )
+        )  # fmt: skip
+
+    def refined(
+        self, poses: Poses, points: Points, step_m: float, step_rad: float
+    ) -> tuple[Poses, NDArray[np.float64]]:
+        """Return poses (N, 3) moved uphill, and their scores (N,).
+
+        Pattern search: steps along x, y and yaw, halved three times.
+        """
+        found, scores = np.array(poses, np.float64), np.zeros(len(poses))
+        _refine(
+            self.log_likelihood, self.outside, *_frame(self.spec), found,
+            np.ascontiguousarray(points), scores, step_m, step_rad,
+        )  # fmt: skip
+        return found, scores
+
+
+def _log_likelihood(
+    distance: NDArray[Any], sigma: float, random: float
+) -> NDArray[np.float32]:
+    hit = np.exp(-(distance.astype(np.float64) ** 2) / (2 * sigma**2))
+    return np.log((1.0 - random) * hit + random).astype(np.float32)
+
+
+def _frame(spec: GridSpec) -> tuple[float, float, float, float]:
+    return spec.origin.x, spec.origin.y, spec.origin.yaw, spec.resolution
+
+
+@kernel
+def _score(
+    field: Any,
+    outside: float,
+    x0: float,
+    y0: float,
+    yaw0: float,
+    resolution: float,
+    x: float,
+    y: float,
+    yaw: float,
+    points: Any,
+) -> float:
+    """Return the mean of the field at the points, seen from a pose."""
+    dx, dy = x - x0, y - y0
+    c0, s0 = math.cos(yaw0), math.sin(yaw0)
+    u0, v0 = (c0 * dx + s0 * dy) / resolution, (c0 * dy - s0 * dx) / resolution
+    c, s = math.cos(yaw - yaw0) / resolution, math.sin(yaw - yaw0) / resolution
+    total = 0.0
+    height, width = field.shape
+    for k in range(points.shape[0]):
+        px, py = points[k, 0], points[k, 1]
+        u, v = u0 + c * px - s * py, v0 + s * px + c * py
+        if 0.0 <= u < width and 0.0 <= v < height:
+            total += field[int(v), int(u)]
+        else:
+            total += outside
+    return total / points.shape[0]
+
+
+@kernel
+def _scores(
+    field: Any,
+    outside: float,
+    x0: float,
+    y0: float,
+    yaw0: float,
+    resolution: float,
+    poses: Any,
+    points: Any,
+    scores: Any,
+) -> None:
+    for i in range(poses.shape[0]):
+        scores[i] = _score(
+            field, outside, x0, y0, yaw0, resolution,
+            poses[i, 0], poses[i, 1], poses[i, 2], points,
+        )  # fmt: skip
+
+
+@kernel
+def _share_within(
+    distance: Any,
+    x0: float,
+    y0: float,
+    yaw0: float,
+    resolution: float,
+    pose: Any,
+    points: Any,
+    within: float,
+) -> float:
+    near = 0
+    c0, s0 = math.cos(yaw0), math.sin(yaw0)
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    height, width = distance.shape
+    for k in range(points.shape[0]):
+        dx = pose[0] + c * points[k, 0] - s * points[k, 1] - x0
+        dy = pose[1] + s * points[k, 0] + c * points[k, 1] - y0
+        u, v = (c0 * dx + s0 * dy) / resolution, (c0 * dy - s0 * dx) / resolution
+        if 0.0 <= u < width and 0.0 <= v < height:
+            near += distance[int(v), int(u)] <= within
+    return near / points.shape[0]
+
+
+@kernel
+def _refine(
+    field: Any,
+    outside: float,
+    x0: float,
+    y0: float,
+    yaw0: float,
+    resolution: float,
+    poses: Any,
+    points: Any,
+    scores: Any,
+    step_m: float,
+    step_rad: float,
+) -> None:
+    for i in range(poses.shape[0]):
+        x, y, yaw = poses[i, 0], poses[i, 1], poses[i, 2]
+        best = _score(field, outside, x0, y0, yaw0, resolution, x, y, yaw, points)
+        along, turn = step_m, step_rad
+        for _ in range(4):
+            for _ in range(20):
+                bx, by, byaw, before = x, y, yaw, best
+                for axis in range(6):
+                    sign = 1.0 if axis % 2 == 0 else -1.0
+                    tx = x + sign * along * (axis // 2 == 0)
+                    ty = y + sign * along * (axis // 2 == 1)
+                    tyaw = yaw + sign * turn * (axis // 2 == 2)
+                    score = _score(
+                        field, outside, x0, y0, yaw0, resolution, tx, ty, tyaw, points
+                    )
+                    if score > best:
+                        best, bx, by, byaw = score, tx, ty, tyaw
+                x, y, yaw = bx, by, byaw
+                if best <= before:
+                    break
+            along, turn = along / 2, turn / 2
+        poses[i, 0], poses[i, 1], poses[i, 2], scores[i] = x, y, yaw, best

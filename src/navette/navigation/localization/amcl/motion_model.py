@@ -1,0 +1,87 @@
+"""Odometry motion models: particles moved as the odometry, with its errors.
+
+Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), section 5.4; parameters as those
+of Nav2's AMCL.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2, angle_difference
+
+# Shorter translations have no direction.
+_LEAST_M = 0.01
+
+Alphas = tuple[float, float, float, float, float]
+
+
+def move_differential(
+    particles: NDArray[np.float64],
+    motion: Pose2,
+    alphas: Alphas,
+    rng: np.random.Generator,
+) -> None:
+    """Move particles (N, 3) in place: a turn, a translation, a turn.
+
+    Args:
+        particles: x, y, yaw in the map.
+        motion: base_T_base of the odometry, before to after.
+        alphas: α₁ … α₅; variances are α times squares, as Nav2's.
+        rng: source of the noise.
+    """
+    a1, a2, a3, a4, _ = alphas
+    distance = math.hypot(motion.x, motion.y)
+    first = math.atan2(motion.y, motion.x) if distance > _LEAST_M else 0.0
+    second = angle_difference(motion.yaw, first)
+    # Driving backward is not two turns of 180 degrees.
+    first_noise = min(abs(first), math.pi - abs(first))
+    second_noise = min(abs(second), math.pi - abs(second))
+    count = len(particles)
+    turn_1 = first + _normal(a1 * first_noise**2 + a2 * distance**2, count, rng)
+    turn_2 = second + _normal(a1 * second_noise**2 + a2 * distance**2, count, rng)
+    along = distance + _normal(
+        a3 * distance**2 + a4 * (first_noise**2 + second_noise**2), count, rng
+    )
+    heading = particles[:, 2] + turn_1
+    particles[:, 0] += along * np.cos(heading)
+    particles[:, 1] += along * np.sin(heading)
+    particles[:, 2] = _wrapped(heading + turn_2)
+
+
+def move_omni(
+    particles: NDArray[np.float64],
+    motion: Pose2,
+    alphas: Alphas,
+    rng: np.random.Generator,
+) -> None:
+    """Move particles (N, 3) in place: a translation in any direction, and a turn.
+
+    Args:
+        particles: x, y, yaw in the map.
+        motion: base_T_base of the odometry, before to after.
+        alphas: α₁ … α₅; variances are α times squares, as Nav2's.
+        rng: source of the noise.
+    """
+    a1, a2, a3, a4, a5 = alphas
+    distance, turn = math.hypot(motion.x, motion.y), motion.yaw
+    count = len(particles)
+    along = distance + _normal(a3 * distance**2 + a1 * turn**2, count, rng)
+    side = _normal(a5 * distance**2 + a1 * turn**2, count, rng)
+    turned = turn + _normal(a4 * turn**2 + a2 * distance**2, count, rng)
+    heading = particles[:, 2] + math.atan2(motion.y, motion.x)
+    particles[:, 0] += along * np.cos(heading) - side * np.sin(heading)
+    particles[:, 1] += along * np.sin(heading) + side * np.cos(heading)
+    particles[:, 2] = _wrapped(particles[:, 2] + turned)
+
+
+def _normal(
+    variance: float, count: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    return rng.normal(0.0, math.sqrt(variance), count)
+
+
+def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    wrapped: NDArray[np.float64] = (angles + math.pi) % (2 * math.pi) - math.pi
+    return wrapped

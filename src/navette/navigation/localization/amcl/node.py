@@ -1,0 +1,260 @@
+"""The node ``amcl``: scans, odometry and a known map in, map → odom out.
+
+Without a map the status is ``no_map``. Without an initial pose the robot is
+``localizing``: map → odom is published once the pose is found, for which the robot has
+to move in places that look alike. A robot whose scans stop matching the map is
+``lost``: the last correction stays, navigation stops, and the whole map is searched.
+"""
+
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidInputError, InvalidValueError
+from navette.geometry import Pose2, Transform3
+from navette.msgs import topics
+from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
+from navette.msgs.nav2_msgs.srv import SetInitialPose
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_msgs.msg import Header
+from navette.msgs.std_srvs.srv import Empty
+from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.grids import grid_from_message
+from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.localizer import (
+    Located,
+    MapLocalizer,
+    ScanView,
+    default_covariance,
+    is_usable,
+)
+from navette.navigation.localization.amcl.messages import (
+    cloud_message,
+    planar_covariance,
+    scan_points,
+    spatial_covariance,
+)
+from navette.navigation.localization.amcl.params import AmclParams
+from navette.navigation.localization.ekf.messages import transform_message
+from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import pose_message, pose_of
+from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.time import ns_to_stamp
+
+_START = ("x", "y", "z", "yaw")
+_LEVELS = {
+    LocalizationState.LOCALIZED: StatusReporter.OK,
+    LocalizationState.LOCALIZING: StatusReporter.WARN,
+}
+
+
+class AmclNode(StageNode):
+    """Adaptive Monte Carlo localization with the names of Nav2's."""
+
+    PARAMS = AmclParams
+    FIXED_AT_START: ClassVar = ("seed",)
+    INPUTS: ClassVar = (
+        Input.of(topics.LIDAR, "laser scan", rate_hz=10.0, callback="on_scan"),
+        Input.of(topics.ODOMETRY, "motion", rate_hz=10.0, callback="on_odometry"),
+        Input.of(topics.STATIC_MAP, "the known map", callback="on_map"),
+        Input.of(
+            topics.INITIAL_POSE,
+            "pose of the robot according to a person or program",
+            callback="on_initial_pose",
+        ),
+    )
+    OUTPUTS: ClassVar = (
+        Output.of(topics.AMCL_POSE, "estimated pose with covariance"),
+        Output.of(topics.PARTICLES, "the particles, only while it is subscribed to"),
+        Output.of(topics.TF, "map → odom", rate_hz=10.0),
+        status_output(topics.LOCALIZATION_STATUS.name),
+    )
+
+    params: AmclParams
+
+    def __init__(self, node_name: str = "amcl", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self._lifecycle = StageLifecycle(self, "amcl")
+        self._localizer: MapLocalizer | None = None
+        self._given: tuple[Pose2, NDArray[np.float64]] | None = None
+        self._map: OccupancyGrid | None = None
+        self._state = LocalizationState.NO_MAP
+        self._tracker = self._new_tracker()
+        self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
+        self._status.report(LocalizationState.NO_MAP, StatusReporter.ERROR)
+        self.create_service(
+            Empty, "reinitialize_global_localization", self.on_reinitialize
+        )
+        self.create_service(Empty, "request_nomotion_update", self.on_request_update)
+        self.create_service(SetInitialPose, "set_initial_pose", self.on_set_pose)
+
+    def declare_params(self) -> Any:
+        """Declare Nav2's initial_pose.x, .y, .z and .yaw beside PARAMS."""
+        self._start = [
+            float(self.declare_parameter(f"initial_pose.{name}", 0.0).value)
+            for name in _START
+        ]
+        return super().declare_params()
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Store the pose of the odometry."""
+        self._tracker.update(msg)
+
+    def on_map(self, msg: OccupancyGrid) -> None:
+        """Localize on a map; another one keeps the pose."""
+        if self._localizer is not None and self.params.first_map_only:
+            return
+        self._map = msg
+        self._begin(msg)
+
+    def on_scan(self, msg: LaserScan) -> None:
+        """Locate the robot at the stamp of the scan."""
+        if self._localizer is None or not self._lifecycle.is_active:
+            return
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        odom_T_base = self._tracker.predicted_at(stamp_ns)
+        base_T_sensor = self._tracker.transform_to_base(msg.header.frame_id)
+        if odom_T_base is None or base_T_sensor is None:
+            return
+        points = scan_points(msg, base_T_sensor, self.params)
+        located = self._localizer.step(ScanView(points, odom_T_base, stamp_ns))
+        self._publish(located, odom_T_base, stamp_ns)
+
+    def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
+        """Continue from a pose of a person or program."""
+        frame = msg.header.frame_id or self.params.global_frame_id
+        if frame != self.params.global_frame_id:
+            raise InvalidInputError(
+                "unknown_frame",
+                f"initial pose in frame {frame!r}; expected "
+                f"{self.params.global_frame_id!r}",
+            )
+        covariance = planar_covariance(msg.pose.covariance)
+        if not is_usable(covariance):
+            covariance = default_covariance(self.params)
+        self._set_pose(pose_of(msg.pose.pose), covariance)
+
+    def on_set_pose(self, request: Any, response: Any) -> Any:
+        """Continue from a pose, as with ``/initialpose``."""
+        self.on_initial_pose(request.pose)
+        return response
+
+    def on_reinitialize(self, request: Any, response: Any) -> Any:
+        """Forget the pose and search the whole map."""
+        self._given = None
+        if self._localizer is not None:
+            self._localizer.locate_globally()
+        self.get_logger().info("global localization: the whole map is searched")
+        return response
+
+    def on_request_update(self, request: Any, response: Any) -> Any:
+        """Update the filter at the next scan, also without motion."""
+        if self._localizer is not None:
+            self._localizer.request_update()
+        return response
+
+    def on_params_changed(self, old: AmclParams) -> None:
+        """Start again with the new values, at the present pose."""
+        if self.params.odom_frame_id != old.odom_frame_id:
+            self._tracker = self._new_tracker()
+        if self._map is not None:
+            self._begin(self._map)
+
+    def on_time_jump(self) -> None:
+        """Drop the pose."""
+        self._tracker.reset()
+        if self._map is not None:
+            self._localizer = None
+            self._begin(self._map)
+
+    def _new_tracker(self) -> PoseTracker:
+        params = self.params
+        return PoseTracker(self, params.base_frame_id, params.odom_frame_id)
+
+    def _begin(self, msg: OccupancyGrid) -> None:
+        try:
+            cells, spec = grid_from_message(msg)
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
+        former = self._localizer
+        self._localizer = MapLocalizer(self.params, cells, spec)
+        given = self._given
+        if former is not None and not self.params.always_reset_initial_pose:
+            if not former.filter.is_empty:
+                estimate = former.filter.estimate()
+                given = estimate.pose, estimate.covariance + np.eye(3) * 1e-4
+        elif given is None and self.params.set_initial_pose:
+            x, y, _, yaw = self._start
+            given = Pose2(x, y, yaw), default_covariance(self.params)
+        if given is not None:
+            self._localizer.set_pose(*given)
+        self._report(self._localizer.confidence.state)
+
+    def _set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
+        self._given = pose, covariance
+        self.get_logger().info(
+            f"initial pose: ({pose.x:.2f}, {pose.y:.2f}), heading {pose.yaw:.2f} rad"
+        )
+        if self._localizer is None:
+            self.get_logger().warning("no map has arrived yet; the pose is kept for it")
+            return
+        self._localizer.set_pose(pose, covariance)
+
+    def _publish(self, located: Located, odom_T_base: Pose2, stamp_ns: int) -> None:
+        params = self.params
+        if located.map_T_odom is not None and params.tf_broadcast:
+            ahead_ns = round(params.transform_tolerance * 1e9)
+            transform = transform_message(
+                stamp_ns + ahead_ns,
+                params.global_frame_id,
+                params.odom_frame_id,
+                Transform3.from_pose2(located.map_T_odom),
+            )
+            self.publish(topics.TF.name, TFMessage(transforms=[transform]))
+        estimate = located.estimate
+        if estimate is None:
+            self._report(located.state)
+            return
+        self._report(
+            located.state,
+            match=located.match,
+            stddev_m=estimate.stddev_m,
+            share=estimate.share,
+            particles=len(self._particles),
+        )
+        if not located.is_updated:
+            return
+        header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=params.global_frame_id)
+        if located.map_T_odom is not None:
+            message = PoseWithCovarianceStamped(header=header)
+            message.pose.pose = pose_message(located.map_T_odom @ odom_T_base)
+            message.pose.covariance = spatial_covariance(estimate.covariance)
+            self.publish(topics.AMCL_POSE.name, message)
+        if self.has_listeners(topics.PARTICLES.name):
+            assert self._localizer is not None, "it made the estimate"
+            weights = self._localizer.filter.weights
+            cloud = cloud_message(self._particles, weights, header)
+            self.publish(topics.PARTICLES.name, cloud)
+
+    @property
+    def _particles(self) -> NDArray[np.float64]:
+        assert self._localizer is not None, "called with a map"
+        return self._localizer.filter.particles
+
+    def _report(self, state: LocalizationState, **details: Any) -> None:
+        if state is not self._state:
+            self._state = state
+            log = self.get_logger()
+            if state is LocalizationState.LOST:
+                log.warning(
+                    "lost: the scans do not match the map at the estimated pose; "
+                    "navigation stops. The whole map is searched; publish the pose on "
+                    f"{topics.INITIAL_POSE.name} to help"
+                )
+            else:
+                log.info(f"localization: {state}")
+        self._status.report(state, _LEVELS.get(state, StatusReporter.ERROR), **details)

@@ -1,0 +1,171 @@
+"""Augmented, adaptive Monte Carlo localization.
+
+Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), table 8.3, with KLD sampling.
+Where the algorithm adds random poses, here candidates of a search of the whole map are
+added: poses from which the present scan fits.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.localization.amcl.estimate import (
+    ParticleEstimate,
+    heaviest_cluster,
+)
+from navette.navigation.localization.amcl.global_search import (
+    Candidates,
+    search_map,
+)
+from navette.navigation.localization.amcl.likelihood_field import (
+    LikelihoodField,
+    Points,
+)
+from navette.navigation.localization.amcl.motion_model import (
+    move_differential,
+    move_omni,
+)
+from navette.navigation.localization.amcl.params import AmclParams
+from navette.navigation.localization.amcl.resampling import (
+    kld_limit,
+    occupied_bins,
+    resampled,
+)
+
+# Spread of the particles around a candidate of the search.
+_SEED_STDDEV = (0.08, 0.08, math.radians(3.0))
+# Candidates are drawn by this power of their likelihood: those that fit a little less
+# well survive until the robot has moved.
+_SEED_BEAMS = 6.0
+# Updates between two searches of the whole map.
+_SEARCH_EVERY = 5
+# Largest share of particles that recovery replaces in an update.
+_MOST_REPLACED = 0.5
+# Below this ratio of the short-term to the long-term mean recovery begins.
+_RECOVERY_RATIO = 0.8
+
+
+class ParticleFilter:
+    """Particles of the pose of the base in the map.
+
+    Args:
+        params: models and numbers.
+        field: of the known map.
+        rng: source of all noise.
+    """
+
+    def __init__(
+        self, params: AmclParams, field: LikelihoodField, rng: np.random.Generator
+    ) -> None:
+        self.params = params
+        self._field = field
+        self._rng = rng
+        self._alphas = tuple(getattr(params, f"alpha{i}") for i in range(1, 6))
+        omni = params.robot_model_type == "nav2_amcl::OmniMotionModel"
+        self._move = move_omni if omni else move_differential
+        self.particles = np.empty((0, 3))
+        self.weights = np.empty(0)
+        self._forget_means()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no pose has been given or found yet."""
+        return not len(self.particles)
+
+    def set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
+        """Start at a pose with a covariance (3, 3) of x, y, yaw."""
+        count = self.params.max_particles
+        mean = np.array([pose.x, pose.y, pose.yaw])
+        drawn = self._rng.multivariate_normal(
+            mean, covariance, count, check_valid="ignore"
+        )
+        drawn[:, 2] = (drawn[:, 2] + math.pi) % (2 * math.pi) - math.pi
+        self.particles, self.weights = drawn, np.full(count, 1.0 / count)
+        self._forget_means()
+
+    def locate_globally(self, points: Points) -> bool:
+        """Start at all poses from which a scan fits; return whether there are any."""
+        found = search_map(self._field, points)
+        if not len(found.poses):
+            return False
+        count = self.params.max_particles
+        self.particles = self._around(found, count)
+        self.weights = np.full(count, 1.0 / count)
+        self._forget_means()
+        return True
+
+    def predict(self, motion: Pose2) -> None:
+        """Move the particles by the odometry's motion, base before to base after."""
+        self._move(self.particles, motion, self._alphas, self._rng)
+
+    def update(self, points: Points) -> None:
+        """Weight by a scan's points (M, 2), base frame; resample when due."""
+        if not len(points):
+            return
+        scores = self._field.scores(self.particles, points)
+        likelihood = np.exp(scores)  # geometric mean of the beams
+        self._note_quality(float(self.weights @ likelihood))
+        beams = min(self.params.independent_beams, float(len(points)))
+        log_weights = np.log(self.weights + 1e-300) + beams * (scores - scores.max())
+        weights = np.exp(log_weights - log_weights.max())
+        self.weights = weights / weights.sum()
+        self._updates += 1
+        if self._updates % self.params.resample_interval == 0:
+            self._resample(points)
+
+    def estimate(self) -> ParticleEstimate:
+        """Return the heaviest cluster."""
+        return heaviest_cluster(self.particles, self.weights)
+
+    def match(self, pose: Pose2, points: Points) -> float:
+        """Return the share of points that end at obstacles of the map; 0 … 1."""
+        within_m = max(2.0 * self.params.sigma_hit, 1.5 * self._field.spec.resolution)
+        return self._field.share_within(np.array(pose), points, within_m)
+
+    def recover(self, points: Points, share: float) -> None:
+        """Replace a share of the particles by candidates of a search of the map."""
+        found = search_map(self._field, points)
+        count = round(share * len(self.particles))
+        if not count or not len(found.poses):
+            return
+        order = self._rng.permutation(len(self.particles))[:count]
+        self.particles[order] = self._around(found, count)
+        self.weights = np.full(len(self.particles), 1.0 / len(self.particles))
+
+    def _forget_means(self) -> None:
+        self._slow = self._fast = 0.0
+        self._updates = self._searched = 0
+
+    def _note_quality(self, mean: float) -> None:
+        params = self.params
+        if not self._slow:
+            self._slow = self._fast = mean
+            return
+        self._slow += params.recovery_alpha_slow * (mean - self._slow)
+        self._fast += params.recovery_alpha_fast * (mean - self._fast)
+
+    def _resample(self, points: Points) -> None:
+        params = self.params
+        drawn = resampled(self.particles, self.weights, params.max_particles, self._rng)
+        needed = kld_limit(occupied_bins(drawn), params.pf_err, params.pf_z)
+        count = min(max(needed, params.min_particles), params.max_particles)
+        if count < len(drawn):
+            drawn = resampled(self.particles, self.weights, count, self._rng)
+        self.particles = drawn
+        self.weights = np.full(len(drawn), 1.0 / len(drawn))
+        ratio = self._fast / self._slow if self._slow else 1.0
+        due = self._updates - self._searched >= _SEARCH_EVERY
+        if params.recovery_alpha_slow and ratio < _RECOVERY_RATIO and due:
+            self._searched = self._updates
+            self.recover(points, min(_MOST_REPLACED, 1.0 - ratio))
+
+    def _around(self, found: Candidates, count: int) -> NDArray[np.float64]:
+        """Return ``count`` particles around candidates, drawn by their likelihood."""
+        weights = np.exp(_SEED_BEAMS * (found.scores - found.scores.max()))
+        drawn = resampled(found.poses, weights, count, self._rng)
+        noisy: NDArray[np.float64] = drawn + self._rng.normal(size=(count, 3)) * (
+            _SEED_STDDEV
+        )
+        return noisy
