@@ -6,7 +6,8 @@ or transforms they are dropped and the map does not change.
 """
 
 import math
-from pathlib import Path
+import pathlib
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from navette.errors import FileFormatError, InvalidInputError, InvalidValueError
@@ -14,7 +15,7 @@ from navette.geometry.map_files import read_occupancy_map
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
     NO_DISCS,
@@ -32,6 +33,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.grids.spec import Cells
 from navette.navigation.mapping.gate import FusionGate
+from navette.navigation.mapping.keyframes import Keyframes, replaced
 from navette.navigation.mapping.memory import (
     STEADY,
     BodyMotion,
@@ -48,6 +50,7 @@ from navette.navigation.servers.costmap_services import (
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import pose_of
 
 # A stamp this much older than the last fused one belongs to a new run: the simulation
 # was reset, or a bag starts again.
@@ -86,6 +89,11 @@ class MapMemoryNode(StageNode):
             topics.TRACKED_OBSTACLES,
             "moving obstacles, which leave no trail in the map",
             callback="on_moving",
+        ),
+        Input.of(
+            topics.TRAJECTORY,
+            "where the robot has been according to SLAM; the map is corrected with it",
+            callback="on_trajectory",
         ),
     )
     OUTPUTS: ClassVar = (
@@ -139,7 +147,10 @@ class MapMemoryNode(StageNode):
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; place the costmaps that waited for it."""
+        jumps = self._tracker.jumps
         self._tracker.update(msg)
+        if self._tracker.jumps != jumps:
+            self._relocate()
         twist = msg.twist.twist
         self._motion = BodyMotion(
             twist.angular.z, twist.linear.z, _tilt_of(msg.pose.pose.orientation)
@@ -168,6 +179,21 @@ class MapMemoryNode(StageNode):
     def on_moving(self, msg: ObstacleArray) -> None:
         """Store the moving obstacles."""
         self._moving = discs_from_message(msg, self.params.map_frame)
+
+    def on_trajectory(self, msg: Path) -> None:
+        """Rebuild the map from the costmaps at their corrected poses."""
+        if msg.header.frame_id != self.params.map_frame:
+            raise InvalidInputError(
+                "unknown_frame",
+                f"trajectory in frame {msg.header.frame_id!r}; expected map_frame, "
+                f"{self.params.map_frame!r}",
+            )
+        trajectory = [
+            (stamp_to_ns(each.header.stamp), pose_of(each.pose)) for each in msg.poses
+        ]
+        corrected = self._keyframes.correct(trajectory)
+        if corrected:
+            self._rebuild(corrected)
 
     def on_timer(self) -> None:
         """Fuse the newest costmap if the robot moved far enough."""
@@ -215,7 +241,34 @@ class MapMemoryNode(StageNode):
         )
         self._hits = HitPoints()
         self._newest: PlacedCostmap | None = None
+        self._keyframes = Keyframes()
         self._last_stamp_ns = 0
+        self._publish_map(self._now_ns())
+
+    def _relocate(self) -> None:
+        """Correct the map after a jump of the pose.
+
+        With a trajectory, :meth:`on_trajectory` does that. Otherwise what was fused may
+        be at wrong places: the loaded map remains.
+        """
+        if self._is_corrected:
+            return
+        newest, self._newest = self._newest, None
+        pose = None if newest is None else self._tracker.pose_at(newest.stamp_ns)
+        if newest is not None and pose is not None:
+            self._newest = replaced(newest, pose)
+        self._rebuild([] if self._newest is None else [self._newest])
+
+    @property
+    def _is_corrected(self) -> bool:
+        """Whether a trajectory is published, so that costmaps are kept for it."""
+        return self.count_publishers(topics.TRAJECTORY.name) > 0
+
+    def _rebuild(self, costmaps: Sequence[PlacedCostmap]) -> None:
+        self._memory.reset()
+        self._gate.reset()
+        for costmap in costmaps:
+            self._memory.fuse(costmap)
         self._publish_map(self._now_ns())
 
     def _place_waiting(self) -> None:
@@ -257,6 +310,9 @@ class MapMemoryNode(StageNode):
 
     def _on_placed(self, costmap: PlacedCostmap) -> None:
         self._newest = costmap
+        if self._is_corrected:
+            odom_T_base = self._tracker.in_odom(costmap.map_T_base)
+            self._keyframes.trace(costmap.stamp_ns, odom_T_base)
         if self._gate.on_arrival(costmap, self._memory, self._now_ns()):
             self._fuse(costmap)
 
@@ -264,6 +320,9 @@ class MapMemoryNode(StageNode):
         if not self._memory.fuse(costmap):
             return
         self._gate.fused(costmap, self._now_ns())
+        if self._is_corrected:
+            odom_T_base = self._tracker.in_odom(costmap.map_T_base)
+            self._keyframes.add(costmap, odom_T_base)
         self._last_stamp_ns = costmap.stamp_ns
         self._publish_map(costmap.stamp_ns)
 
@@ -286,7 +345,7 @@ class MapMemoryNode(StageNode):
         self._publish_map(self._now_ns())
 
     def _load_file(self) -> None:
-        known = read_occupancy_map(Path(self.params.map_file).expanduser())
+        known = read_occupancy_map(pathlib.Path(self.params.map_file).expanduser())
         height, width = known.cells.shape
         self._load(known.cells, GridSpec(known.resolution, width, height, known.origin))
 

@@ -143,7 +143,10 @@ class ParticleFilter:
         if not self._slow:
             self._slow = self._fast = mean
             return
-        self._slow += params.recovery_alpha_slow * (mean - self._slow)
+        # It rises fast: at first the particles are spread, and most of them are wrong.
+        rises = mean > self._slow
+        slow = params.recovery_alpha_fast if rises else params.recovery_alpha_slow
+        self._slow += slow * (mean - self._slow)
         self._fast += params.recovery_alpha_fast * (mean - self._fast)
 
     def _resample(self, points: Points) -> None:
