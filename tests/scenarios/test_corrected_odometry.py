@@ -3,13 +3,14 @@
 import math
 
 from navette.geometry import Pose2, Transform3
+from navette.geometry.messages import transform_message
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.stack import NavigationStack
 from navette.runtime import Context, Executor, Node, VirtualClock
-from navette.sim import Scene, World, messages
+from navette.sim import Scene, World
 from navette.sim.node import SimNode
 
 GOAL = (7.0, 1.0)
@@ -27,7 +28,7 @@ class Corrector(Node):
     def _publish(self) -> None:
         now_ns = self.get_clock().now_ns
         pose = self._error if now_ns < self._until_ns else Pose2(0.0, 0.0, 0.0)
-        transform = messages.transform_message(
+        transform = transform_message(
             now_ns, "map", "odom", Transform3.from_pose2(pose)
         )
         self._publisher.publish(TFMessage(transforms=[transform]))

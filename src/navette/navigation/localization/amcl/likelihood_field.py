@@ -164,7 +164,7 @@ def _score(
             total += field[int(v), int(u)]
         else:
             total += outside
-    return total / points.shape[0]
+    return float(total / points.shape[0])
 
 
 @kernel
@@ -207,7 +207,7 @@ def _share_within(
         u, v = (c0 * dx + s0 * dy) / resolution, (c0 * dy - s0 * dx) / resolution
         if 0.0 <= u < width and 0.0 <= v < height:
             near += distance[int(v), int(u)] <= within
-    return near / points.shape[0]
+    return float(near / points.shape[0])
 
 
 @kernel

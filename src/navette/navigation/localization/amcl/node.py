@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Pose2, Transform3
+from navette.geometry.messages import transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.nav2_msgs.srv import SetInitialPose
@@ -37,7 +38,6 @@ from navette.navigation.localization.amcl.messages import (
     spatial_covariance,
 )
 from navette.navigation.localization.amcl.params import AmclParams
-from navette.navigation.localization.ekf.messages import transform_message
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker

@@ -36,8 +36,8 @@ from navette.navigation.localization.amcl.resampling import (
 
 # Spread of the particles around a candidate of the search.
 _SEED_STDDEV = (0.08, 0.08, math.radians(3.0))
-# Candidates are drawn by this power of their likelihood: those that fit a little less
-# well survive until the robot has moved.
+# Candidates are drawn by this power of their likelihood: candidates that fit a little
+# less well survive until the robot has moved.
 _SEED_BEAMS = 6.0
 # Updates between two searches of the whole map.
 _SEARCH_EVERY = 5

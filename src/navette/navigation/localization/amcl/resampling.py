@@ -44,4 +44,5 @@ def resampled(
     edges = np.cumsum(weights)
     at = (rng.random() + np.arange(count)) * (edges[-1] / count)
     chosen = np.minimum(np.searchsorted(edges, at, side="right"), len(weights) - 1)
-    return particles[chosen]
+    drawn: NDArray[np.float64] = particles[chosen]
+    return drawn
