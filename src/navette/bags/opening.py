@@ -95,7 +95,7 @@ def _open_packed(path: Path) -> BagReader:
 
 
 def _unpack(path: Path, packed: BinaryIO, out: BinaryIO) -> None:
-    """Decompress a recording; refuse what is none, and what expands too far."""
+    """Decompress a recording; refuse other content and content that expands too far."""
     most = _FREE_BYTES + _MOST_RATIO * path.stat().st_size
     size = 0
     stream = zstandard.ZstdDecompressor().stream_reader(packed)

@@ -1,4 +1,4 @@
-"""Replace existing recordings, and nothing else."""
+"""Replace existing recordings, but no other files."""
 
 import shutil
 from pathlib import Path

@@ -50,7 +50,7 @@ def interface_class(
     """Return the class of a type: known here, described by a peer, or in the workspace.
 
     Args:
-        of: endpoints of the topic or service, whose nodes are asked for the definition.
+        of: endpoints of the topic or service, whose nodes provide the definition.
         kind: ``msg``, ``srv`` or ``action``, to expand ``pkg/Name``.
     """
     name = full_type_name(type_name, kind)

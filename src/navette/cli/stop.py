@@ -17,7 +17,8 @@ _REPEAT_S = 0.05
 
 def stop(
     release: Annotated[
-        bool, Option("--release", help="Let the robot obey commands again.")
+        bool,
+        Option("--release", help="Release the stop: the robot follows commands again."),
     ] = False,
 ) -> None:
     """Stop the robot at once; it stays stopped until --release.

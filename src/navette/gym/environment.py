@@ -93,7 +93,7 @@ class NavigationEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
             kept=self.params.worlds,
             first=self.params.first_world,
         )
-        # Any world has the same robot: the spaces are those of every episode.
+        # Every world has the same robot, hence every episode the same spaces.
         first = self._source.select(np.random.default_rng(0), None)
         self.observer = _observer_of(first.simulator, self.params)
         self.observation_space = self.observer.observation_space()

@@ -48,8 +48,8 @@ class BodyParams(FrameParams):
     )
     blind_reverse_m: float = param(
         0.1,
-        "how far the body may leave its outline, where the robot was put down, into "
-        "space behind it that no beam has seen, backing up and turning: a hand's width",
+        "how far the body may move beyond its outline, where the robot was put down, "
+        "into space behind it that no beam has measured, backing up and turning",
         at_least=0.0,
         at_most=10.0,
     )

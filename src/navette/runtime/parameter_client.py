@@ -64,7 +64,7 @@ class AsyncParameterClient:
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Let events run until all services are there; False after the timeout."""
+        """Run events until all services are available; False after the timeout."""
         loop = self.node.context.loop
         timeout = None if timeout_sec is None else round(timeout_sec * 1e9)
         loop.run(

@@ -70,7 +70,7 @@ class SimNode(StageNode):
         ),
         Input.of(
             topics.EMERGENCY_STOP_RELEASE,
-            "lets the robot obey commands again",
+            "releases the stop: the robot follows commands again",
             callback="on_release",
         ),
     )

@@ -39,7 +39,8 @@ class ViewerParams(Params):
         (), "host names under which the server may be addressed, besides local ones"
     )
     allow_unencrypted: bool = param(
-        False, "other machines may connect without TLS; tokens can be read on the way"
+        False,
+        "other machines may connect without TLS; tokens can be read on the network",
     )
     allow_anyone: bool = param(
         False, "other machines may connect without a token and drive the robot"

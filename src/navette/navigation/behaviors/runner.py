@@ -111,7 +111,7 @@ class MotionBehavior:
             return BehaviorStep(STOP, self._stale_end(now, dt))
         self._stale_s = 0.0
         if self._stall.update(self._last, now.pose, (now.speed, now.turn_rate), dt):
-            text = "the robot does not move as commanded: something is in its way"
+            text = "the robot does not move as commanded: an obstacle blocks it"
             return BehaviorStep(STOP, BehaviorEnd("COLLISION_AHEAD", text))
         target = self._motion.step(now)
         if target is None:

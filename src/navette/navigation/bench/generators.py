@@ -16,7 +16,7 @@ from navette.navigation.grids import GridSpec
 from navette.sim import Scene, World
 
 CORRIDOR_M = 0.75
-"""Width of the narrowest place on the way; a Jackal is 0.43 m wide."""
+"""Width of the narrowest passage of the path; a Jackal is 0.43 m wide."""
 
 _CELL_M = 0.15
 _POST_M = 0.075

@@ -112,7 +112,7 @@ def _digest(file: Path) -> str:
 
 
 def read_results(file: Path) -> dict[str, TrialResult]:
-    """Return key → result of a results file; empty if there is no file.
+    """Return key → result of a results file; empty without a file.
 
     Raises:
         FileFormatError: a line is not a result; names file and line.

@@ -28,7 +28,7 @@ def shortest_length(
 ) -> float | None:
     """Return the length (m) of the shortest path through all points in order.
 
-    None: the disc does not fit at a point or on the way.
+    None: the disc does not fit at a point or between two points.
 
     Args:
         lethal: (H, W), 1 = obstacle.

@@ -66,7 +66,7 @@ def _changed(trial: Trial, text: str) -> Trial:
 
 
 def absolute_place(text: str) -> str:
-    """Return a file, or the place of a method in one, with its whole path.
+    """Return the place of a file, or of a method in a file, with an absolute path.
 
     Other processes and machines may have another working folder.
     """

@@ -83,7 +83,7 @@ class CommandFollower(BaseFollower):
     """Follow paths with a :class:`CommandMethod`.
 
     The method chooses the command. Stale inputs, the limits of speed and acceleration,
-    the collision check and the end of the path are looked after here.
+    the collision check and the end of the path are handled here.
 
     Args:
         params: limits and tolerances.
@@ -238,7 +238,7 @@ class CommandFollower(BaseFollower):
         return float(self._measure[-1] - self._measure[self._at])
 
     def _restart(self) -> None:
-        """Let the method forget what it has accumulated, if it can."""
+        """Reset what the method has accumulated, if it supports that."""
         restart = getattr(self._method, "reset", None)
         if restart is not None:
             own_call(self._name, restart)

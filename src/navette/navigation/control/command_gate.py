@@ -59,8 +59,9 @@ class CommandGate:
     def eased(self, command: VelocityCommand, ages: InputAges) -> VelocityCommand:
         """Return the command, slower while odometry or costmap is late.
 
-        From half of the timeout on, the limits fall linearly to a third at the timeout:
-        a lost message costs little speed, and a lost sensor little way.
+        From 40 % of the timeout on, the limits fall linearly to a third at the timeout:
+        one lost message hardly slows the robot down, and a robot without data stops
+        within a short distance.
         """
         odometry_timeout_s, costmap_timeout_s = self._timeouts(ages)
         late = ages.odometry_s / odometry_timeout_s

@@ -136,7 +136,7 @@ class PieceDrive:
         v *= max(_SLOWEST, aligned)
         if aligned < _ALIGNED:
             cause = LimitedBy.HEADING
-        # The last word has the check of the command, which stops the robot.
+        # The check of the command decides last; it stops the robot.
         free = approach_speed(self._free_m(speed), speed, params)
         free = max(free, _SLOWEST * self._cruise)
         v, cause = min((v, cause), (free, LimitedBy.CLEARANCE))

@@ -58,7 +58,7 @@ def explain(state: ControlState, now: Situation, params: ControlParams) -> str:
         case ControlState.STALLED:
             return (
                 f"the robot did not move for {params.stall_time_s:g} s though "
-                "commanded: something that its sensors do not see is in the way, or "
+                "commanded: an obstacle that its sensors do not detect blocks it, or "
                 "the wheels are blocked or stopped by hardware"
             )
         case ControlState.STALE_ODOMETRY:

@@ -368,7 +368,7 @@ class ControlNode(MotionNode):
     def _stopped_if_stalled(
         self, inputs: FollowerInputs, output: FollowerOutput
     ) -> FollowerOutput:
-        """Stop instead of pushing against what no sensor sees."""
+        """Stop instead of pushing against an obstacle that no sensor detects."""
         pose = inputs.pose
         measured = (inputs.speed, inputs.turn_rate, inputs.side_speed)
         dt = 1 / self.params.rate_hz

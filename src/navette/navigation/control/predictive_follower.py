@@ -198,7 +198,7 @@ class PredictiveFollower(BaseFollower):
     ) -> FollowerOutput | None:
         """Turn in place to the heading at the end, more exactly than samples do.
 
-        None when the heading is reached or none is asked for.
+        None when the heading is reached or the path requires none.
         """
         params = self._params
         if path.direction[-1] != 0 or params.drive == ACKERMANN:
@@ -279,7 +279,7 @@ class PredictiveFollower(BaseFollower):
         if off > self._params.goal_tolerance_m or left > _END_M:
             return False
         c, s = math.cos(inputs.pose.yaw), math.sin(inputs.pose.yaw)
-        # A path that ends with a turn in place ends with a heading asked for; others
+        # A path that ends with a turn in place ends with a required heading; others
         # have the least turn left within ``_END_M``.
         if path.direction[-1] != 0 or self._params.drive != ACKERMANN:
             return True

@@ -40,7 +40,7 @@ class OwnSteering:
         self._name = f"controller {name}: curvature(piece, at, pose, speed)"
 
     def reset(self) -> None:
-        """Let the law forget what it has accumulated, if it can."""
+        """Reset what the law has accumulated, if it supports that."""
         if hasattr(self._law, "reset"):
             own_call(self._name, self._law.reset)
 

@@ -79,7 +79,7 @@ class CostmapNode(StageNode):
         self._services = CostmapServices(self, "local_costmap", source)
 
     def on_scan(self, msg: LaserScan) -> None:
-        """Publish the scan's costmap, if its turn has come."""
+        """Publish the costmap of a selected scan."""
         scan = PlanarScan(
             np.asarray(msg.ranges),
             msg.angle_min,

@@ -1,14 +1,14 @@
-"""Selection of the scans that become costmaps, where a sensor is faster than needed."""
+"""Selection of scans for costmaps, for sensors faster than the required rate."""
 
 
 class ScanSelection:
-    """Selects the last scan of each period: the newest that a reader at its end gets.
+    """Selects the last scan of each period: the newest one at the end of the period.
 
     Periods begin at multiples of their length. The next stamp is predicted from the
     interval between the last two.
 
     Args:
-        rate_hz: periods a second; 0 selects every scan.
+        rate_hz: periods per second; 0 selects every scan.
     """
 
     def __init__(self, rate_hz: float) -> None:

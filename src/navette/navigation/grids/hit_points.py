@@ -4,9 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.msgs.builtin_interfaces.msg import Time
+from navette.geometry.messages import header
 from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
-from navette.msgs.std_msgs.msg import Header
 
 _KEPT = 16
 _FIELD_BYTES = 4
@@ -18,9 +17,8 @@ def points_to_message(
     """Return a cloud of points (N, 2), m, at z = 0."""
     cloud = np.zeros((len(points), 3), np.float32)
     cloud[:, :2] = points
-    stamp = Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
     return PointCloud2(
-        header=Header(stamp=stamp, frame_id=frame_id),
+        header=header(stamp_ns, frame_id),
         height=1,
         width=len(points),
         fields=[

@@ -195,8 +195,8 @@ def _free_between(
 def _surface(beams: _Beams, i: int) -> float:
     """Return how far the space between beams i − 1 and i is free; 0 = not known.
 
-    Two echoes belong to one surface if they are no farther apart than those of a wall
-    that the beams meet at 10°, or both beams end without an echo.
+    Two echoes belong to one surface if they are at most as far apart as on a wall that
+    the beams hit at 10°, or if both beams end without an echo.
     """
     near, far = beams.ranges[i - 1], beams.ranges[i]
     if not (near > beams.range_min and far > beams.range_min):

@@ -1,4 +1,4 @@
-"""Detect that the robot does not move as commanded: it pushes against something."""
+"""Detection of a robot that does not move as commanded, as it pushes an obstacle."""
 
 import math
 from collections import deque
@@ -18,7 +18,7 @@ _LEAST_M, _LEAST_RAD = 0.02, 0.1
 _AWAY_M, _AWAY_RAD = 0.3, 1.0
 # … or after this time.
 _AGAIN_S = 10.0
-# Slower than this it does not push: a turn of sampled commands drifts as much.
+# Slower motion is not pushing: sampled commands of a turn drift as fast.
 _DRIFT_MPS = 0.02
 
 

@@ -27,8 +27,8 @@ Points = NDArray[np.float64]
 def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int64]:
     """Replace the masks of the cells that contain points; return these cells (M, 2).
 
-    The points of a cell are those of its newest scan: older ones may be of an object
-    that moved, and their noise would make walls thicker with every scan.
+    A cell has the points of its newest scan only: older points may belong to an object
+    that moved, and their noise would thicken walls with every scan.
 
     Args:
         masks: (H, W), changed in place.

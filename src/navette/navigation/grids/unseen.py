@@ -38,8 +38,8 @@ class Layer(NamedTuple):
 class StartArea(NamedTuple):
     """The body where the robot was put down, and the width of a seam around it.
 
-    There was room for the robot to be put down, and for a hand around it. Where the
-    robot has backed into the seam, a turn in place stays within a hand's width, too.
+    The space was free when the robot was put down, with the width of a hand around it.
+    Where the robot has backed into the seam, a turn in place stays within that width.
     """
 
     outline: Outline
@@ -60,7 +60,7 @@ def unseen_points(
 ) -> Array:
     """Return centres (N, 2), m, of the cells that no layer has seen.
 
-    Cells at the border of the start area are divided, so that it ends where it should.
+    Cells at the border of the start area are divided to represent the border exactly.
 
     Args:
         layers: one or two; the cells are those of the first, continued outside it.

@@ -1,8 +1,8 @@
 """Obstacles that beams passed: objects that moved away, also at a distance.
 
 At a distance, neighbouring beams pass a thin post on both sides and mark its cell free
-without having measured it; so a free cell there proves nothing. A beam that passes
-where an earlier one ended does: something that stood there would have ended it too.
+without having measured it, so a free cell there proves nothing. A beam that passes the
+point where an earlier beam ended proves that the obstacle is gone.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ _ASIDE_M = 0.007
 _BEYOND_M = 0.1
 """Least distance beyond the point at which the beam ends, against noise."""
 _TIMES = 3
-"""Scans without an echo from a cell or beside it after which it is free."""
+"""Number of scans without an echo in or beside a cell after which it is free."""
 
 
 class VanishedCells:

@@ -1,9 +1,9 @@
-"""Whether any motion of the body connects two places: a proof that there is no path.
+"""Reachability of the body: the proof that no path exists.
 
 The configuration space of the body (Lozano-Pérez 1983) as one bit per heading and cell:
-every obstacle closes the poses at which the body covers it, and a flood through the
-open poses finds all that can be reached. A search that ends without a path proves
-nothing when its budget ends; a flood that does not reach the goal does.
+every obstacle closes the poses at which the body covers it, and a flood fill through
+the open poses finds everything reachable. A search that exhausts its budget proves
+nothing; a flood fill that does not reach the goal proves that no path exists.
 """
 
 from typing import Any
@@ -24,9 +24,10 @@ Masks = NDArray[np.uint64]
 class BodySpace:
     """Poses of the body that no obstacle closes.
 
-    Without a margin a cell is closed only if the body fits nowhere in it: what is not
-    reached is certain. With a margin the body is placed at the cell's centre with the
-    middle heading of each bin: what is reached is certain.
+    Without a margin a cell is closed only if the body fits nowhere in it: cells that
+    are not reached are certainly unreachable. With a margin the body is placed at the
+    cell's centre with the middle heading of each bin: cells that are reached are
+    certainly reachable.
 
     Args:
         lethal: (H, W) obstacles.

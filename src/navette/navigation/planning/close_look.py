@@ -1,8 +1,8 @@
-"""A finer map for doors that the cells of the map are too coarse for.
+"""Finer map for doors that are too narrow for the resolution of the map.
 
-A lethal cell of 0.1 m may hide half of the room that a door leaves on each side. The
-finer map has lethal cells only where beams ended, so that searches on it decide about
-centimetres. It is large, and used only where the map itself has no path.
+A lethal cell of 0.1 m may cover half of the clearance on each side of a door. The finer
+map has lethal cells only where beams ended, so that a search on it resolves
+centimetres. The finer map is large; it is used only where no path exists on the map.
 """
 
 import math
@@ -33,7 +33,7 @@ def close_map(
     around: NDArray[np.float64],
     reach_m: float,
 ) -> CloseMap:
-    """Return the part of a map that matters, in cells of about 2.5 cm.
+    """Return the relevant part of a map in cells of about 2.5 cm.
 
     Args:
         occupancy: (H, W) −1 unknown, 0 free … 100 occupied.
@@ -41,7 +41,7 @@ def close_map(
         hits: (N, 2) map frame, m: where beams ended within its lethal cells.
         lethal_cost: value from which a cell is an obstacle.
         around: (M, 2) map frame, m: points that the part contains.
-        reach_m: the part contains everything this near to an obstacle.
+        reach_m: distance from obstacles up to which the part contains the map.
     """
     lethal = occupancy >= lethal_cost
     rows, columns = _part(lethal, spec, around, reach_m)

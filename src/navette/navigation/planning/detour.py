@@ -182,8 +182,8 @@ class DetourPlanner:
     def _turned_to_goal(self, poses: Poses, target: Target) -> Poses:
         """Return the poses with a turn in place to the goal's heading, if it fits.
 
-        The search ends within a tolerance of the heading; without the turn, the
-        controller's own error comes on top and the goal may never be reached.
+        The search ends within a tolerance of the heading. Without the turn, the
+        controller's error adds to it, and the goal may not count as reached.
         """
         if target.yaw is None:
             return poses

@@ -180,7 +180,7 @@ class Navigator:
         self._jumped = True
 
     def note_stalled(self, now_ns: int) -> None:
-        """Note that something invisible stops the robot; plan around that place."""
+        """Avoid a place where something that no sensor detects stops the robot."""
         if self._progress is None or now_ns - self._blocked_ns < _BLOCKED_PERIOD_NS:
             return
         self._checker.spend()
@@ -332,8 +332,8 @@ class Navigator:
         self._checker.spend()
         # A robot that has not started gets one more attempt only.
         failed = plan.outcome is Outcome.METHOD_FAILED
-        hopeless = first or failed or (not self._set_out and self._checker.spent > 1)
-        if hopeless or self._checker.exhausted:
+        final = first or failed or (not self._set_out and self._checker.spent > 1)
+        if final or self._checker.exhausted:
             self._finish(plan.outcome, plan.fault)
             return
         # The map may improve: retry until the attempts are exhausted.

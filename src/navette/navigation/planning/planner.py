@@ -287,7 +287,7 @@ class Planner:
 
     @property
     def _quick(self) -> int:
-        """Budget of a search before the proof that there is no path."""
+        """Budget of a search before the proof that no path exists."""
         return self.params.max_expansions // _QUICK_SHARE
 
     @property
@@ -295,9 +295,9 @@ class Planner:
         return min(self.params.tight_margin_m, self.params.clearance_margin_m)
 
     def _look_closer(self, start: Pose2, goal: Goal, plan: Plan) -> Plan:
-        """Plan on finer cells where those of the map have no path.
+        """Plan on finer cells where no path was found on the map's own cells.
 
-        Returns ``plan``, which has none, with its reason if that is certain now.
+        Returns ``plan``, with the reason why no path exists if that is proven.
         """
         assert self._map is not None, "set_map comes first"
         occupancy, spec = self._map.cells, self._map.spec
@@ -318,7 +318,7 @@ class Planner:
         )
         if found.outcome.has_path:
             return found
-        # Only what an exact pose on every cell confirms is worth the long search.
+        # The long search runs only if a path of exact poses at cell centres may exist.
         if self._why_impossible(closer, start, goal, 0.0) is None:
             found = self._on_close_map(closer, body.loose(slack))._plan_with(
                 margin, start, goal, max_expansions=self.params.max_expansions
@@ -351,10 +351,10 @@ class Planner:
         goal: Goal,
         margin_m: float | None = None,
     ) -> Outcome | None:
-        """Return why no motion of the body leads to the goal; None if one may.
+        """Return why no motion of the body reaches the goal; None if one may exist.
 
         A goal lies inside an obstacle if obstacles enclose all space around it that the
-        body could move in, and no beam has seen any of that.
+        body could move in, and no beam has measured any of it.
         """
         occupancy, spec = closer.occupancy, closer.spec
         lethal = occupancy >= self.params.lethal_cost

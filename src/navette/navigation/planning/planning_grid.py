@@ -63,7 +63,7 @@ class BodyShape:
         )
 
     def through_gaps(self, slack_m: float) -> "BodyShape":
-        """Return the body as it drives along a gap: half its width keeps it out.
+        """Return the body for gaps: cells nearer than half its width are closed.
 
         The base may be nearer to an obstacle ahead or behind, or while it turns.
         """

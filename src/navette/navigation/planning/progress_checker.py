@@ -9,7 +9,7 @@ _REST_NS = 1_000_000_000
 
 
 class ProgressChecker:
-    """Checks progress towards one goal; times are those of the node's clock."""
+    """Checks progress towards one goal, in the time of the node's clock."""
 
     def __init__(self, params: PlannerParams) -> None:
         self.configure(params)

@@ -43,9 +43,9 @@ def segment(
 
     Args:
         points: (N, 2) returns, m.
-        valid: (N,) which of them exist.
+        valid: (N,) whether a return exists.
         away: (N,) their distances from the sensor, m.
-        gap_m: largest distance between neighbours, at no distance from the sensor.
+        gap_m: largest distance between neighbours close to the sensor.
     """
     runs = np.empty((len(points), 2), np.int64)
     count = _segment_kernel(points, valid, away, gap_m, runs)

@@ -24,7 +24,7 @@ from navette.navigation.tracking.tracks import Track, TrackedObstacle, associate
 _AGES_S = (0.25, 0.75)
 _LEAST_RETURNS = 3
 _LEAST_CHANGED = 3
-# Relative difference up to which two radii are those of the same obstacle.
+# Relative difference of radii up to which two clusters are the same obstacle.
 _SAME_RADIUS = 0.3
 # Beams past the predicted centre that show that an obstacle is not there any more.
 _PASSED = 3

@@ -111,7 +111,7 @@ def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:
 
 
 def test_a_frontier_is_seen_from_its_own_side_of_a_wall() -> None:
-    """The nearest free cell as the crow flies may be behind the wall."""
+    """The nearest free cell in a straight line may be behind the wall."""
     cells, spec = grid(
         "################",
         "#.............##",

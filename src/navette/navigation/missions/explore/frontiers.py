@@ -40,7 +40,7 @@ class FrontierParams:
         min_length_m: shorter frontiers are ignored: noise between cells.
         max_length_m: longer frontiers are divided.
         viewpoint_m: largest distance from a frontier to its goal, along free cells.
-        gain: metres of way that a metre of frontier is worth.
+        gain: metres of path that compensate for a metre of frontier.
     """
 
     clearance_m: float = 0.35
@@ -191,8 +191,8 @@ def _beside(mask: Mask) -> Mask:
 def _pieces(cells: CellIndices, longest: int) -> list[CellIndices]:
     """Divide a frontier until no piece is longer than ``longest`` cells a side.
 
-    The middle of a long frontier, around a whole room for example, is no place to look
-    at it from.
+    The middle of a long frontier, such as one around a whole room, need not have a view
+    of it.
     """
     extent = np.ptp(cells, axis=0)
     axis = int(np.argmax(extent))

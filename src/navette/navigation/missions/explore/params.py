@@ -25,7 +25,7 @@ class ExplorerParams(FrameParams):
         at_most=10.0,
     )
     frontier_gain: float = param(
-        1.0, "metres of way that a metre of frontier is worth", at_least=0.0
+        1.0, "metres of path that compensate for a metre of frontier", at_least=0.0
     )
     map_timeout_s: float = param(
         15.0, "exploration ends if no map has arrived for this long", above=0.0

@@ -7,7 +7,7 @@ from navette.geometry import Pose2, angle_difference
 
 _SPACING_M = 0.05
 _KEPT_M = 5.0
-# Heading error up to which a pose is on the way back along the trail.
+# Heading error up to which a pose counts as backing up along the trail.
 _BACK_RAD = 1.0
 
 
@@ -18,10 +18,10 @@ class DrivenTrail:
         self._poses: deque[Pose2] = deque(maxlen=round(_KEPT_M / _SPACING_M))
 
     def add(self, pose: Pose2) -> None:
-        """Note a pose; a jump starts the trail again.
+        """Append a pose; a jump starts a new trail.
 
-        Backing up along the trail shortens it: the way back from there does not lead
-        forward again to where the robot turned back.
+        Backing up along the trail removes its end, so that the path back does not first
+        lead forward again.
         """
         while self._has_backed_up(pose):
             self._poses.pop()
