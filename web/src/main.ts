@@ -5,4 +5,7 @@ import "./workbench/scene.css";
 import "./panels/index";
 import { App } from "./workbench/app";
 
-void new App().start();
+const app = new App();
+/** For the console and for tests: `navette.scene`, `navette.connection`. */
+Object.assign(globalThis, { navette: app });
+void app.start();

@@ -402,16 +402,8 @@ class ViewerNode(StageNode):
 
     def _make_server(self, listeners: Listeners | None) -> ViewerServer:
         params = self.params
-        package = importlib.resources.files("navette.viewer")
-        files = dict(read_page(package / "data"))
-        files["/"] = files["/page.html"]
-        new_page = read_page(package / "page")
-        files |= {f"/page{path}": file for path, file in new_page.items()}
-        site = Site(
-            files,
-            lambda: build_layout(*self._frames),
-            self._health,
-        )
+        page = importlib.resources.files("navette.viewer") / "page"
+        site = Site(read_page(page), lambda: build_layout(*self._frames), self._health)
         gate = Gate(
             AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
             self._access.login,

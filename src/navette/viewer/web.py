@@ -19,12 +19,6 @@ PAGE_POLICY = (
     "worker-src 'self'; frame-src blob:; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'"
 )
-# Of the old page, until the new one replaces it.
-OLD_POLICY = (
-    "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'unsafe-inline'; "
-    "img-src data:; connect-src 'self' ws: wss:; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'"
-)
 
 
 @dataclass(frozen=True)
@@ -134,7 +128,7 @@ class Site:
 
     def _answer(self, path: str, encodings: str) -> HttpResponse:
         if path in self._files:
-            return _file_response(path, self._files[path], encodings)
+            return _file_response(self._files[path], encodings)
         if path == "/layout.json":
             download = 'attachment; filename="navette-layout.json"'
             headers = {"Content-Disposition": download}
@@ -146,11 +140,10 @@ class Site:
         return refuse(404, f"nothing at {path!r:.120}; known: /, /layout.json, /health")
 
 
-def _file_response(path: str, file: PageFile, encodings: str) -> HttpResponse:
+def _file_response(file: PageFile, encodings: str) -> HttpResponse:
     headers = {}
     if file.content_type.startswith("text/html"):
-        policy = PAGE_POLICY if path.startswith("/page/") else OLD_POLICY
-        headers["Content-Security-Policy"] = policy
+        headers["Content-Security-Policy"] = PAGE_POLICY
     if "gzip" in encodings and len(file.compressed) < len(file.body):
         headers |= {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
         return HttpResponse(200, file.content_type, file.compressed, headers)

@@ -334,7 +334,7 @@ def test_the_token_opens_socket_and_files(
     with Client(program.address, additional_headers=header):
         pass
     with urllib.request.urlopen(f"http://{program.address}/") as page:
-        assert b'id="login"' in page.read()
+        assert b"<title>Navette</title>" in page.read()
     with pytest.raises(urllib.error.HTTPError, match="401"):
         urllib.request.urlopen(f"http://{program.address}/health")
     address = f"http://{program.address}/health?token={TOKEN}"

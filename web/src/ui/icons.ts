@@ -30,6 +30,7 @@ const PATHS: Record<string, string> = {
   fit: "M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10",
   cube: "M8 2 13.5 5v6L8 14 2.5 11V5zM2.5 5 8 8l5.5-3M8 8v6",
   plan: "M2.5 2.5h11v11h-11zM2.5 8h5M7.5 2.5v7M10.5 8h3",
+  coordinates: "M6.5 2.5 5 13.5M11 2.5 9.5 13.5M2.5 6h11M2.5 10h11",
   close: "M4 4l8 8M12 4l-8 8",
   plus: "M8 3v10M3 8h10",
   menu: "M2.5 4.5h11M2.5 8h11M2.5 11.5h11",

@@ -158,7 +158,7 @@ export class App {
       h("hr"),
       h("h2", {}, "Other programs"),
       copy,
-      h("a", { class: "item", href: `../layout.json${query}`, download: "navette-layout.json" }, icon("download"), h("span", {}, "Layout for Foxglove")),
+      h("a", { class: "item", href: `./layout.json${query}`, download: "navette-layout.json" }, icon("download"), h("span", {}, "Layout for Foxglove")),
     ];
   }
 

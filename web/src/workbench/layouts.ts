@@ -41,7 +41,7 @@ export const SHIPPED: readonly Layout[] = [
     name: "Drive",
     places: {
       left: panels("displays", "topics", "nodes"),
-      right: panels("behavior_tree", "parameters", "image"),
+      right: panels("tree", "parameters", "image"),
       below: panels("plot", "log", "diagnostics"),
     },
     open: [],

@@ -52,8 +52,8 @@ export class Phone implements Arrangement {
   }
 
   #drawTabs(open: readonly OpenPanel[]): void {
-    const first = new Set(open.map(({ kind }) => kind));
-    const kinds = panelKinds().filter(({ id }) => first.has(id)).concat(panelKinds().filter(({ id }) => !first.has(id)));
+    const wanted = [...new Set(open.map(({ kind }) => kind))].flatMap((kind) => panelKind(kind) ?? []);
+    const kinds = [...wanted, ...panelKinds().filter((kind) => !wanted.includes(kind))];
     this.#tabs.replaceChildren(
       ...kinds.map(({ id, title, icon: name }) =>
         h("button", { class: "bare", "data-kind": id, "aria-expanded": "false", onclick: () => (this.#shown === id ? this.#close() : this.open(id)) }, icon(name), h("span", {}, title)),

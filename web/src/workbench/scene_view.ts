@@ -8,6 +8,7 @@ import type { ToolSet } from "../tools/tool_set";
 import { h, setText } from "../ui/dom";
 import { every } from "../ui/frames";
 import { icon } from "../ui/icons";
+import { goalForm } from "./goal_form";
 import { InfoCard } from "./info_card";
 import { waypointCard } from "./waypoint_card";
 
@@ -101,6 +102,8 @@ export class SceneView {
       this.#buttons.set(tool.id, button);
       bar.append(button);
     }
+    const form = goalForm(this.scene, this.operator);
+    bar.append(form.button, form.card);
     return bar;
   }
 
