@@ -8,10 +8,8 @@ from typing import Any
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
 from navette.msgs.topics import CLOCK
-from navette.navigation.stack.localization import (
-    localization_nodes,
-    localization_parameters,
-)
+from navette.navigation.stack.localization import localization_nodes
+from navette.navigation.stack.localization_params import localization_parameters
 from navette.navigation.stack.methods import method_parameters
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
@@ -168,9 +166,11 @@ class Simulation:
         """Add the parameters of the localization nodes, below all others."""
         start = self.sim.simulator.pose().to_pose2()
         derived = ParameterOverrides()
-        found = localization_parameters(self.sim.params, start)
-        for name, values in found.items():
-            derived.add(name, values, f"localization {self.sim.params.localization}")
+        params = self.sim.params
+        found = localization_parameters(params, start)
+        for name, _ in localization_nodes(params):
+            if name in found:
+                derived.add(name, found[name], f"localization {params.localization}")
         sets = self.context.overrides.sets
         self.context.overrides.sets = [*derived.sets, *sets]
 

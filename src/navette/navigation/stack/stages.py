@@ -103,6 +103,15 @@ def localizer() -> None:
 
 
 @_program
+def amcl() -> None:
+    """Run the localization on a known map."""
+    from navette.navigation.localization.amcl.node import AmclNode
+
+    text = "/static_map, /lidar, /odom/filtered → /tf (map → odom), /amcl_pose"
+    _run_localization("amcl", AmclNode, text)
+
+
+@_program
 def costmap() -> None:
     """Run the costmap."""
     from navette.navigation.costmap.node import CostmapNode
@@ -274,6 +283,35 @@ def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
         _profile(resolved, name),
         resolved=resolved,
     )
+
+
+def _run_localization(name: str, node_class: Callable[..., Node], text: str) -> None:
+    """Run a node that corrects the odometry, with the frames of the robot."""
+    parser = _parser(name, text)
+    _add_robot(parser)
+    parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
+    given = _parse(parser)
+    from navette.geometry import Pose2
+    from navette.navigation.stack.localization_params import localization_parameters
+    from navette.sim.params import SimParams
+
+    resolved = _resolve(given)
+    of_sim = _profile(resolved, "sim").for_node("/sim")
+    frames = {
+        frame: of_sim[frame].value
+        for frame in ("map_frame", "odom_frame", "base_frame")
+        if frame in of_sim
+    }
+    x, y, yaw_deg = given.start or (0.0, 0.0, 0.0)
+    start = Pose2(x, y, math.radians(yaw_deg))
+    values = localization_parameters(SimParams(localization=name, **frames), start)
+    own = values[name]
+    if given.start is None:
+        own = {key: v for key, v in own.items() if "initial_pose" not in key}
+    profile = ParameterOverrides()
+    profile.add("/**", own, "frames of the robot")
+    profile.sets += _profile(resolved, name).sets
+    _run(lambda context: node_class(context=context), profile, resolved=resolved)
 
 
 def _parser(name: str, text: str) -> argparse.ArgumentParser:

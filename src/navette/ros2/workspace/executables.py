@@ -18,6 +18,7 @@ _STAGES = (
     "odom_integrator",
     "ekf",
     "localizer",
+    "amcl",
     "costmap",
     "map_memory",
     "tracking",

@@ -1,0 +1,48 @@
+"""Parameters of the nodes that locate the robot: frames and start of a run.
+
+Frames are those of REP 105: ``map → odom → base``. The simulator publishes ``odom →
+base`` (a filter, if it filters the odometry) and, without correction, ``map → odom``.
+"""
+
+from typing import Any
+
+from navette.geometry import Pose2
+from navette.msgs import topics
+from navette.sim.params import SimParams
+
+_ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
+
+
+def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str, Any]]:
+    """Return node → parameters: the frames of the run and the start pose.
+
+    Args:
+        sim: parameters of the simulated robot.
+        start: map_T_base at the start.
+    """
+    x, y, yaw = start
+    values: dict[str, dict[str, Any]] = {
+        "ekf": {
+            "map_frame": sim.map_frame,
+            "odom_frame": sim.odometry_frame,
+            "world_frame": sim.odometry_frame,
+            "base_link_frame": sim.base_frame,
+            "frequency_hz": sim.odometry_rate_hz,
+            "odom0": topics.WHEEL_ODOMETRY.name,
+            "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
+            "imu0": topics.IMU.name,
+            "imu0_config": [name in ("yaw", "vyaw") for name in _ORDER],
+            "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
+        },
+        "amcl": {
+            "global_frame_id": sim.map_frame,
+            "odom_frame_id": sim.odometry_frame,
+            "base_frame_id": sim.base_frame,
+            "seed": sim.seed,
+            "set_initial_pose": True,
+            "initial_pose.x": x,
+            "initial_pose.y": y,
+            "initial_pose.yaw": yaw,
+        },
+    }
+    return values
