@@ -132,3 +132,49 @@ def test_a_robot_whose_nose_is_stuck_backs_up_along_its_path_and_arrives(
     assert names == [
         "Navigate", clear, clear, "Navigate", "BackUpAlongPath", "Navigate"
     ]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_the_last_rung_backs_up_and_plans_around_the_place(
+    simulate: MakeSimulation, impatient: Path
+) -> None:
+    """Beyond x = 1 m the robot can only back up, until it does so the second time."""
+    room = World("room").add_walls((10.0, 10.0)).scene()
+    simulation = simulate(
+        scene=room,
+        robot="jackal",
+        goals=((3.5, 0.0),),
+        params_files=(impatient,),
+        max_time_s=120.0,
+    )
+    names = started(simulation)
+    positions: list[tuple[str, float, float]] = []
+
+    def note(msg: Odometry) -> None:
+        position = msg.pose.pose.position
+        positions.append((names[-1] if names else "", position.x, position.y))
+
+    simulation.monitor.create_subscription(Odometry, "/ground_truth", note, 10)
+    drive = simulation.sim.simulator.command
+
+    def command(linear: float, angular: float, side: float = 0.0) -> bool:
+        held = positions and positions[-1][1] >= 1.0 and "BackUp" not in names
+        return drive(min(linear, 0.0), 0.0) if held else drive(linear, angular, side)
+
+    simulation.sim.simulator.command = command  # type: ignore[method-assign]
+    simulation.run()
+    (outcome,) = simulation.summary().goals
+    assert outcome.result == "reached"
+    rungs = list(dict.fromkeys(names))
+    assert rungs == [
+        "Navigate", "ClearCostmapAroundRobot", "BackUpAlongPath", "Spin", "Wait",
+        "BackUp", "AvoidPlace",
+    ]  # fmt: skip
+    back = [x for name, x, _ in positions if name == "BackUp"]
+    assert back[0] - back[-1] > 0.5
+    # Around the place where it was held, 1 m ahead of the axle at most.
+    last = len(names) - 1 - names[::-1].index("AvoidPlace")
+    assert names[last:] == ["AvoidPlace", "Navigate"]
+    beside = [abs(y) for _, x, y in positions[-len(positions) // 2 :] if 1.0 < x < 1.5]
+    assert max(beside) > 0.3
+    assert simulation.summary().contacts == 0
