@@ -61,6 +61,8 @@ _EXACT_START_RAD = 0.1
 _ROOMY_END = 2.0
 # Least difference between the length of a bend and the turn times the least radius.
 _STEERABLE_M = 0.02
+# A robot as near to its goal stands there.
+_AT_GOAL_M = 0.03
 # Searches on the map's own cells, and through gaps, get this part of the budget.
 _QUICK_SHARE = 4
 # In a passage the clearance varies by this, and is not planned below the least.
@@ -256,9 +258,29 @@ class Planner:
         try:
             if self._own is not None:
                 return self._plan_own(self._own, start, goal)
-            return self._plan_or_squeeze(start, goal)
+            turn = self._plan_turn(start, goal)
+            return self._plan_or_squeeze(start, goal) if turn is None else turn
         except MethodFaultError as error:
             return Plan(Outcome.METHOD_FAILED, fault=str(error))
+
+    def _plan_turn(self, start: Pose2, goal: Goal) -> Plan | None:
+        """Plan no more than a turn in place for a robot that stands at the goal.
+
+        Its direction to the goal is noise. A behaviour tree that plans every second
+        would have the robot turn there for ever. None: it does not, or cannot turn.
+        """
+        off = math.dist((start.x, start.y), (goal.x, goal.y))
+        if off > _AT_GOAL_M or not self.params.turns_in_place:
+            return None
+        yaw = start.yaw if goal.yaw is None else goal.yaw
+        poses = turn_in_place(start.x, start.y, start.yaw, yaw)
+        margin = self._tight_m
+        fits = check_path(poses, self._opened(margin, start), self.body)
+        return (
+            None
+            if fits.first_bad is not None
+            else self._planned(goal, poses, margin, 0)
+        )
 
     def _plan_own(self, own: OwnPlan, start: Pose2, goal: Goal) -> Plan:
         """Plan with the user's method; the path is driven as it is."""

@@ -18,6 +18,12 @@ def pose_of(msg: Pose) -> Pose2:
     return Pose2(msg.position.x, msg.position.y, yaw_of((q.x, q.y, q.z, q.w)))
 
 
+def has_heading(msg: Pose) -> bool:
+    """Return whether the orientation is given; zeros mean any heading."""
+    q = msg.orientation
+    return any((q.x, q.y, q.z, q.w))
+
+
 def poses_of(msg: Path) -> Poses:
     """Return poses (N, 3) x, y, yaw of a path, in the path's frame."""
     rows = [pose_of(stamped.pose) for stamped in msg.poses]

@@ -217,3 +217,16 @@ def test_a_path_is_checked_from_the_robot_on(graph: GraphHarness) -> None:
     assert not check([]).is_valid
     assert not check([4.0], frame="moon").is_valid
     assert not check([math.nan, 4.0]).is_valid
+
+
+def test_a_goal_with_an_orientation_of_zeros_has_any_heading(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph)
+    world.pose = Pose2(4.0, 4.0, 1.0)
+    world.ready()
+    goal = stamped(4.01, 4.01)
+    goal.pose.orientation.w = 0.0
+    reply = to_pose(graph, goal)
+    headings = poses_of(reply.result.path)[:, 2]
+    assert headings == pytest.approx([1.0] * len(headings))

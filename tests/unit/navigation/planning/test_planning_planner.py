@@ -270,3 +270,28 @@ def test_a_turn_of_180_degrees_uses_the_direction_with_more_room() -> None:
         plan = made.plan(Pose2(5, 4, 0), Goal(1, goal_y))
         swept = plan.poses[np.hypot(*(plan.poses[:, :2] - (5, 4)).T) < 0.01, 2]
         assert np.sin(swept[1:-1]).max() < 0.1, "past the right, away from the shelf"
+
+
+@pytest.mark.parametrize("yaw", [None, 2.0])
+def test_a_robot_at_its_goal_turns_at_most(yaw: float | None) -> None:
+    """Also if it plans again and again while it turns, as a behaviour tree does."""
+    start = Pose2(3.01, 3.02, -1.0)
+    plan = planner(*empty_map(6, 6)).plan(start, Goal(3.0, 3.0, yaw))
+    assert plan.outcome is Outcome.OK
+    assert np.ptp(plan.poses[:, :2], axis=0).max() == 0.0
+    assert plan.poses[-1, 2] == pytest.approx(-1.0 if yaw is None else yaw)
+    assert turn_total(plan) == pytest.approx(0.0 if yaw is None else 3.0)
+
+
+def test_a_robot_at_its_goal_that_cannot_turn_there_drives() -> None:
+    occupancy, spec = empty_map(6, 6)
+    fill(occupancy, spec, (0.0, 6.0), (3.45, 3.6))
+    fill(occupancy, spec, (0.0, 6.0), (2.4, 2.55))
+    long = PlannerParams(
+        footprint_m=(0.6, 0.2, -0.6, 0.2, -0.6, -0.2, 0.6, -0.2),
+        clearance_margin_m=0.05,
+        tight_margin_m=0.05,
+        comfort_m=0.1,
+    )
+    plan = planner(occupancy, spec, long).plan(Pose2(3, 3, 0.0), Goal(3.0, 3.0, 1.57))
+    assert not plan.outcome.has_path or np.ptp(plan.poses[:, 0]) > 0.3

@@ -26,6 +26,7 @@ from navette.runtime import DurabilityPolicy, QoSProfile
 from navette.runtime.action import ActionClient
 from navette.runtime.input_check import input_check
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import has_heading
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import TransformException
 from navette.runtime.time import ns_to_stamp
@@ -315,7 +316,7 @@ class NodeRobot:
         point = PointStamped(header=goal.header, point=goal.pose.position)
         if _is_valid(topics.GOAL_POINT, point):
             self._node.publish(topics.GOAL_POINT.name, point)
-        if has_heading(goal) and _is_valid(topics.GOAL_POSE, goal):
+        if has_heading(goal.pose) and _is_valid(topics.GOAL_POSE, goal):
             self._node.publish(topics.GOAL_POSE.name, goal)
 
 
@@ -325,12 +326,6 @@ def _is_valid(topic: topics.StackTopic, msg: Any) -> bool:
     except InvalidInputError:
         return False
     return True
-
-
-def has_heading(goal: PoseStamped) -> bool:
-    """Return whether the orientation is given; zeros mean any heading."""
-    q = goal.pose.orientation
-    return any((q.x, q.y, q.z, q.w))
 
 
 def stamped(pose: Pose2, header: Any) -> PoseStamped:

@@ -29,7 +29,13 @@ from navette.runtime import Stopwatch
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import GoalServer
-from navette.runtime.stage.path_messages import moved, path_message, pose_of, poses_of
+from navette.runtime.stage.path_messages import (
+    has_heading,
+    moved,
+    path_message,
+    pose_of,
+    poses_of,
+)
 from navette.runtime.time import Duration
 from navette.runtime.worker import Worker
 
@@ -182,7 +188,7 @@ class PathServer:
         if not goals:
             raise _RequestError("NO_VIAPOINTS_GIVEN", "no goals given")
         start = self._on_map(goal.start, "start") if goal.use_start else self._robot()
-        targets = [Goal(*self._on_map(each, "goal")) for each in goals]
+        targets = [self._target(each) for each in goals]
         return _PathRequest(planner.copy(), start, targets)
 
     def _planner(self, planner_id: str) -> Planner:
@@ -207,6 +213,10 @@ class PathServer:
                 "TF_ERROR", "the robot's pose is unknown or stale: no recent odometry"
             )
         return robot
+
+    def _target(self, msg: PoseStamped) -> Goal:
+        x, y, yaw = self._on_map(msg, "goal")
+        return Goal(x, y, yaw if has_heading(msg.pose) else None)
 
     def _on_map(self, msg: PoseStamped, name: str) -> Pose2:
         frame_id = msg.header.frame_id or self._context.params().map_frame
