@@ -170,7 +170,8 @@ class CommandFollower(BaseFollower):
             self._limited_by = LimitedBy.ACCELERATION
         else:
             self._limited_by = LimitedBy.NONE
-        return self._keep_clear(inputs.pose, self._gate.eased(command, inputs.ages))
+        eased = self._gate.eased(command, inputs.ages)
+        return self._keep_clear(inputs.pose, eased, brake(last, self._params, dt))
 
     def _stopping(self, inputs: FollowerInputs) -> SpeedCap:
         """Return the limits from which the robot can stop at the end of the path."""
@@ -193,11 +194,21 @@ class CommandFollower(BaseFollower):
         )
         return VelocityCommand(*values.tolist())
 
-    def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
-        """Scale the command to what the obstacles allow, at worst a stop."""
+    def _keep_clear(
+        self, pose: Pose2, command: VelocityCommand, braked: VelocityCommand
+    ) -> FollowerOutput:
+        """Scale the command to what the obstacles allow, at worst a stop.
+
+        The robot cannot slow down at once. Where a new arc would require that, it
+        brakes on the arc that it is driving, on which it was found free to stop.
+        """
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
+        is_sudden = scale * abs(command.speed) < abs(braked.speed)
+        if scale < 1.0 and is_sudden and self._collision.check(pose, braked).scale == 1:
+            command, scale = braked, 1.0
+            self._limited_by = LimitedBy.COLLISION_CHECK
         if scale < BLOCKED_SCALE:
             return self._stop(ControlState.BLOCKED)
         self._yield_to_moving(pose, command, scale)

@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 _STEP_M = 0.05  # largest motion of a body point between predicted poses
 _SLACK_M = 0.02  # a body within the margin may come this much closer …
 _FLOOR_M = 0.02  # … but not below this
+_ROUNDING_M = 1e-6
 _MAX_POSES = 400
 _TOUCH_M = 1e-3  # changes of distance that are none
 NONE_UNSEEN = np.empty((0, 2))
@@ -184,7 +185,8 @@ def _least(now: float, margin: float) -> float:
     """Return the clearance to keep: within the margin, along and away is allowed."""
     if now >= margin:
         return margin
-    return max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - 1e-3
+    # Whatever is allowed below the floor adds up, step by step, to a contact.
+    return max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - _ROUNDING_M
 
 
 @kernel(signature="UniTuple(float64, 3)(float64[::1], float64)")

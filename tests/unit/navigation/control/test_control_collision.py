@@ -196,3 +196,11 @@ def test_the_gate_stops_on_stale_inputs(
     ages: InputAges, reason: ControlState | None
 ) -> None:
     assert GATE.stale(ages) is reason
+
+
+def test_below_the_floor_no_motion_comes_closer_at_all() -> None:
+    """A millimetre at every step would add up to a contact."""
+    check = checker((1.5 + 0.05 + 0.015, 0.0))
+    assert check.clearance(ORIGIN) == pytest.approx(0.015)
+    assert check.check(ORIGIN, (0.004, 0.0)).scale == 0.0
+    assert check.check(ORIGIN, (-0.2, 0.0)).scale == 1.0
