@@ -139,6 +139,33 @@ class Damage:
 OnDamage = Callable[[Damage], None]
 
 
+class MessageQuery(NamedTuple):
+    """Which messages to read; None: no limit.
+
+    Attributes:
+        names: of topics.
+        start_ns, end_ns: first and last stamp.
+        on_damage: called for parts that cannot be read; None: they are an error.
+    """
+
+    names: frozenset[str] | None
+    start_ns: int | None
+    end_ns: int | None
+    on_damage: OnDamage | None
+
+    @classmethod
+    def of(
+        cls,
+        topics: Collection[str] | None,
+        start_ns: int | None,
+        end_ns: int | None,
+        on_damage: OnDamage | None,
+    ) -> Self:
+        """Return the query of these arguments."""
+        names = None if topics is None else frozenset(topics)
+        return cls(names, start_ns, end_ns, on_damage)
+
+
 class BagReader(ABC):
     """An open recording; a context manager that closes it.
 
@@ -197,7 +224,6 @@ class BagReader(ABC):
     def stamps(self) -> Iterator[tuple[BagTopic, int]]:
         """Topic and stamp of every message, in no particular order; fast."""
 
-    @abstractmethod
     def messages(
         self,
         topics: Collection[str] | None = None,
@@ -218,6 +244,7 @@ class BagReader(ABC):
         Raises:
             FileFormatError: a part of the file is damaged; names file and byte.
         """
+        return self.read(MessageQuery.of(topics, start_ns, end_ns, on_damage))
 
     def recorded_messages(
         self,
@@ -234,9 +261,18 @@ class BagReader(ABC):
             as_cdr: convert messages of ROS 1; otherwise the topics of the messages are
                 those of the reader as :attr:`BagTopic.as_recorded`.
         """
-        for message in self.messages(
-            topics, start_ns=start_ns, end_ns=end_ns, on_damage=on_damage
-        ):
+        query = MessageQuery.of(topics, start_ns, end_ns, on_damage)
+        return self.read_recorded(query, as_cdr=as_cdr)
+
+    @abstractmethod
+    def read(self, query: MessageQuery) -> Iterator[BagMessage]:
+        """Iterate over the chosen messages; see :meth:`messages`."""
+
+    def read_recorded(
+        self, query: MessageQuery, *, as_cdr: bool
+    ) -> Iterator[RecordedMessage]:
+        """Iterate over the chosen messages; see :meth:`recorded_messages`."""
+        for message in self.read(query):
             yield RecordedMessage(*message)
 
     @abstractmethod

@@ -2,13 +2,14 @@
 
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from navette.bags.bag import (
     BagMessage,
     BagReader,
     BagTopic,
     Damage,
+    MessageQuery,
     OnDamage,
     RecordedMessage,
 )
@@ -153,34 +154,19 @@ class ChunkedReader(BagReader):
                     for stamp in stamps:
                         yield topic, stamp
 
-    def messages(
-        self,
-        topics: Collection[str] | None = None,
-        *,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        on_damage: OnDamage | None = None,
-    ) -> Iterator[BagMessage]:
-        query = self._query(topics, start_ns, end_ns)
-        found = self._read(query, self._topic_of, self._all_to_cdr(), on_damage)
+    def read(self, query: MessageQuery) -> Iterator[BagMessage]:
+        found = self._read(query, self._topic_of, self._all_to_cdr())
         for topic, entry, data in found:
             yield BagMessage(topic, entry[0], data)
 
-    def recorded_messages(
-        self,
-        topics: Collection[str] | None = None,
-        *,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        on_damage: OnDamage | None = None,
-        as_cdr: bool = False,
+    def read_recorded(
+        self, query: MessageQuery, *, as_cdr: bool
     ) -> Iterator[RecordedMessage]:
         topic_of, convert_of = self._topic_of, self._all_to_cdr()
         if not as_cdr:
             topic_of = {n: topic.as_recorded for n, topic in topic_of.items()}
             convert_of = self._convert_of
-        query = self._query(topics, start_ns, end_ns)
-        found = self._read(query, topic_of, convert_of, on_damage)
+        found = self._read(query, topic_of, convert_of)
         for topic, entry, data in found:
             yield RecordedMessage(
                 topic, entry.stamp_ns, data, entry.publish_ns, entry.sequence
@@ -194,30 +180,28 @@ class ChunkedReader(BagReader):
                 convert_of[number] = topic.channel.to_cdr
         return convert_of
 
-    def _query(
-        self, topics: Collection[str] | None, start_ns: int | None, end_ns: int | None
-    ) -> ChunkQuery:
-        names = None if topics is None else frozenset(topics)
+    def _chunk_query(self, query: MessageQuery) -> ChunkQuery:
+        names = query.names
         channels = frozenset(
             number
             for number, topic in self._topic_of.items()
             if names is None or topic.name in names
         )
         return ChunkQuery(
-            channels if topics is not None else None,
-            0 if start_ns is None else start_ns,
-            LAST_NS if end_ns is None else end_ns,
+            channels if names is not None else None,
+            0 if query.start_ns is None else query.start_ns,
+            LAST_NS if query.end_ns is None else query.end_ns,
         )
 
     def _read(
         self,
-        query: ChunkQuery,
+        query: MessageQuery,
         topic_of: Mapping[int, BagTopic],
         convert_of: Mapping[int, Convert],
-        on_damage: OnDamage | None,
     ) -> Iterator[tuple[BagTopic, Entry, bytes]]:
+        on_damage = query.on_damage
         merge = ChunkMerge(self._read_chunk, self._entries, on_damage)
-        for entry, data in merge.messages(self.chunks, query):
+        for entry, data in merge.messages(self.chunks, self._chunk_query(query)):
             channel = entry[1]
             topic = topic_of.get(channel)
             if topic is None:

@@ -6,7 +6,7 @@ first message is available at once and nothing is held in memory. Uses Python's
 """
 
 import sqlite3
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
@@ -16,6 +16,7 @@ from navette.bags.bag import (
     BagReader,
     BagTopic,
     Damage,
+    MessageQuery,
     OnDamage,
     RecordedChannel,
 )
@@ -85,15 +86,8 @@ class Db3Reader(BagReader):
             if number in self._topic_of and isinstance(stamp, int):
                 yield self._topic_of[number], stamp
 
-    def messages(
-        self,
-        topics: Collection[str] | None = None,
-        *,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        on_damage: OnDamage | None = None,
-    ) -> Iterator[BagMessage]:
-        names = None if topics is None else frozenset(topics)
+    def read(self, query: MessageQuery) -> Iterator[BagMessage]:
+        names, start_ns, end_ns, on_damage = query
         wanted = {
             number
             for number, topic in self._topic_of.items()

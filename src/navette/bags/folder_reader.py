@@ -1,7 +1,7 @@
 """Read rosbag2 folders: ``metadata.yaml`` and one or more files."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from pathlib import Path
@@ -14,8 +14,8 @@ from navette.bags.bag import (
     BagMessage,
     BagReader,
     BagTopic,
+    MessageQuery,
     MetadataRecord,
-    OnDamage,
     RecordedMessage,
 )
 from navette.bags.qos import parse_qos
@@ -201,44 +201,20 @@ class FolderReader(BagReader):
             for topic, stamp in reader.stamps():
                 yield self._topic_of[topic], stamp
 
-    def messages(
-        self,
-        topics: Collection[str] | None = None,
-        *,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        on_damage: OnDamage | None = None,
-    ) -> Iterator[BagMessage]:
-        def opened(reader: BagReader) -> Iterator[BagMessage]:
-            return reader.messages(
-                topics, start_ns=start_ns, end_ns=end_ns, on_damage=on_damage
-            )
-
-        for message in self._merged(opened, start_ns):
+    def read(self, query: MessageQuery) -> Iterator[BagMessage]:
+        for message in self._merged(lambda reader: reader.read(query), query.start_ns):
             yield message._replace(topic=self._topic_of[message.topic])
 
-    def recorded_messages(
-        self,
-        topics: Collection[str] | None = None,
-        *,
-        start_ns: int | None = None,
-        end_ns: int | None = None,
-        on_damage: OnDamage | None = None,
-        as_cdr: bool = False,
+    def read_recorded(
+        self, query: MessageQuery, *, as_cdr: bool
     ) -> Iterator[RecordedMessage]:
         def opened(reader: BagReader) -> Iterator[RecordedMessage]:
-            return reader.recorded_messages(
-                topics,
-                start_ns=start_ns,
-                end_ns=end_ns,
-                on_damage=on_damage,
-                as_cdr=as_cdr,
-            )
+            return reader.read_recorded(query, as_cdr=as_cdr)
 
         topic_of = self._topic_of
         if not as_cdr:
             topic_of = {k.as_recorded: t.as_recorded for k, t in topic_of.items()}
-        for message in self._merged(opened, start_ns):
+        for message in self._merged(opened, query.start_ns):
             yield message._replace(topic=topic_of[message.topic])
 
     def _merged(
