@@ -1,7 +1,10 @@
 """Registry of interface definitions, by name.
 
-Packages are part of Navette (``definitions/``), found on the search path, or added by
+Packages are part of Navette, found on the search path, or added by
 :func:`load_interfaces`. A file is read on the first use of its type.
+
+Navette's definitions are those of ROS 2 Jazzy (``definitions/``). ``distributions/``
+contains the types that differ in other distributions; ``NAVETTE_DISTRO`` chooses one.
 """
 
 import os
@@ -18,6 +21,18 @@ from navette.msgs.parser import (
 
 DEFINITIONS = Path(__file__).parent / "definitions"
 KINDS = ("msg", "srv", "action")
+_DISTRIBUTIONS = Path(__file__).parent / "distributions"
+DISTRO_VARIABLE = "NAVETTE_DISTRO"
+DEFAULT_DISTRO = "jazzy"
+# Rolling's definitions are Lyrical's, until they differ.
+_FOLDERS_OF_DISTROS = {
+    "humble": "humble",
+    "jazzy": "",
+    "kilted": "kilted",
+    "lyrical": "lyrical",
+    "rolling": "lyrical",
+}
+DISTROS = tuple(_FOLDERS_OF_DISTROS)
 
 # A list of folders of packages, as PATH is one of programs, for processes that do not
 # call add_interface_path.
@@ -26,6 +41,18 @@ PATH_VARIABLE = "NAVETTE_INTERFACE_PATH"
 _folders: dict[str, Path] = {}
 _search_path: list[Path] = []
 _specs: dict[str, Spec] = {}
+
+
+def distro() -> str:
+    """Return the distribution of ROS 2 whose definitions are used.
+
+    Raises:
+        UnknownNameError: ``NAVETTE_DISTRO`` is not a known distribution.
+    """
+    name = os.environ.get(DISTRO_VARIABLE) or DEFAULT_DISTRO
+    if name not in DISTROS:
+        raise UnknownNameError.of(DISTRO_VARIABLE, name, list(DISTROS))
+    return name
 
 
 def packages() -> list[str]:
@@ -41,8 +68,13 @@ def interface_names(package: str, kind: str) -> list[str]:
     Raises:
         UnknownNameError: no such package.
     """
-    folder = _folder_of(package)
-    return sorted(path.stem for path in (folder / kind).glob(f"*.{kind}"))
+    return sorted(
+        {
+            path.stem
+            for folder in _folders_of(package)
+            for path in (folder / kind).glob(f"*.{kind}")
+        }
+    )
 
 
 def full_name(name: str) -> str:
@@ -94,10 +126,11 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
     """Register the ``.msg``, ``.srv`` and ``.action`` files of a package.
 
     ``folder`` contains ``msg/``, ``srv/`` or ``action/``. All files are read at once,
-    so that errors are raised here. Returns the full names, sorted.
+    so that errors are raised here. They replace Navette's definitions of these types.
+    Returns the full names, sorted.
 
     Raises:
-        InvalidNameError: not a package name, or a package of Navette.
+        InvalidNameError: not a package name.
         FileFormatError: no definitions in the folder, a syntax error, or a reference
             to an unknown type.
     """
@@ -107,8 +140,6 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
             f"package name {package!r}: expected a lower-case letter, then "
             "lower-case letters, digits and single underscores"
         )
-    if (DEFINITIONS / package).is_dir():
-        raise InvalidNameError(f"package {package!r} is part of Navette")
     files = _definition_files(folder)
     specs = [_parse_file(package, path) for path in files]
     known_before = _folders.get(package)
@@ -121,6 +152,14 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
             _folders[package] = known_before
         raise
     return sorted(spec.name for spec in specs)
+
+
+def prefer_interfaces(package: str, folder: Path | str) -> None:
+    """Use the definitions of a folder for the types that it has, read on first use.
+
+    A workspace's copy of a package that is part of Navette.
+    """
+    _folders.setdefault(package, Path(folder))
 
 
 def add_specs(specs: Sequence[Spec], sources: Sequence[Path | str]) -> None:
@@ -150,7 +189,8 @@ def add_interface_path(folder: Path | str) -> None:
     """Search for packages in ``folder/<package>/{msg,srv,action}``, too.
 
     The environment variable ``NAVETTE_INTERFACE_PATH`` adds such folders as well. The
-    packages of Navette come first, then folders in the order in which they were added.
+    packages of Navette come first, then folders in the order in which they were added;
+    those of the variable precede Navette's.
 
     Raises:
         FileFormatError: no such folder.
@@ -162,23 +202,42 @@ def add_interface_path(folder: Path | str) -> None:
         _search_path.append(folder)
 
 
-def _folder_of(package: str) -> Path:
-    if package in _folders:
-        return _folders[package]
+def _folders_of(package: str) -> list[Path]:
+    """Return the folders with definitions of a package; the first with a type decides.
+
+    Raises:
+        UnknownNameError: no such package.
+    """
+    own = [_folders[package]] if package in _folders else []
     if PACKAGE_NAME.fullmatch(package):
         if (DEFINITIONS / package).is_dir():
-            return DEFINITIONS / package
-        for root in _roots():
+            named = [root / package for root in _named_roots()]
+            of_distro = _FOLDERS_OF_DISTROS[distro()]
+            changed = _DISTRIBUTIONS / of_distro / package if of_distro else None
+            folders = [*own, *named, changed, DEFINITIONS / package]
+            return [each for each in folders if each is not None and each.is_dir()]
+        for root in [] if own else _roots():
             if _found_packages(root, package):
                 load_interfaces(package, root / package)
-                return _folders[package]
+                return [_folders[package]]
+    if own:
+        return own
     raise UnknownNameError.of("interface package", package, packages())
 
 
 def _roots() -> list[Path]:
+    return [*_search_path, *_named_roots()]
+
+
+def _named_roots() -> list[Path]:
+    """Return the folders of the variable: of packages, or a package's own."""
     variable = os.environ.get(PATH_VARIABLE, "")
     named = [Path(each) for each in variable.split(os.pathsep) if each]
-    return [*_search_path, *named]
+    return [each.parent if _is_package(each) else each for each in named]
+
+
+def _is_package(folder: Path) -> bool:
+    return any((folder / kind).is_dir() for kind in KINDS)
 
 
 def _found_packages(root: Path, pattern: str = "*") -> set[str]:
@@ -192,11 +251,13 @@ def _found_packages(root: Path, pattern: str = "*") -> set[str]:
 
 def _load(name: str) -> None:
     package, kind, rest = name.split("/")
-    folder = _folder_of(package)
     stem = rest if kind == "msg" else rest.partition("_")[0]
-    path = folder / kind / f"{stem}.{kind}"
-    if INTERFACE_NAME.fullmatch(stem) and path.is_file():
-        _add_spec(_parse_file(package, path))
+    if INTERFACE_NAME.fullmatch(stem):
+        for folder in _folders_of(package):
+            path = folder / kind / f"{stem}.{kind}"
+            if path.is_file():
+                _add_spec(_parse_file(package, path))
+                break
     if name not in _specs:
         known = [f"{package}/{kind}/{each}" for each in interface_names(package, kind)]
         raise UnknownNameError.of("interface", name, known)

@@ -17,6 +17,7 @@ from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
 from navette.files.runs import RunInfo
+from navette.msgs import type_hash
 from navette.transports import (
     DurabilityPolicy,
     Endpoint,
@@ -139,7 +140,14 @@ def test_two_definitions_of_a_type() -> None:
     )
     finding = of(check_topics(Snapshot(endpoints=(ours, theirs))), "/scan")
     assert finding.level is Rating.PROBLEM
-    assert finding.text == f"{SCAN} has 2 definitions: /lidar | /old"
+    assert finding.text == (
+        f"{SCAN} has 2 definitions: "
+        "/lidar (of no known distribution, hash aaaaaaaa…) | "
+        "/old (of no known distribution, hash bbbbbbbb…)"
+    )
+    jazzy = replace(ours, type_hash=type_hash(SCAN))
+    finding = of(check_topics(Snapshot(endpoints=(jazzy, theirs))), "/scan")
+    assert "/lidar (humble, jazzy, kilted, lyrical, rolling, hash " in finding.text
     unhashed = replace(theirs, type_hash="TypeHashNotSupported")
     (finding,) = check_topics(Snapshot(endpoints=(ours, unhashed)))
     assert finding.level is Rating.GOOD

@@ -5,9 +5,11 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from navette.cli.doctor.chain import consequence, explained, missing_links
+from navette.cli.doctor.distributions import distros_by_hash
 from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
 from navette.cli.session import is_of_every_node
+from navette.msgs.registry import DISTRO_VARIABLE
 from navette.msgs.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
 from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
 from navette.transports.qos import incompatible_policies
@@ -139,16 +141,29 @@ def _type_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:
     for end in hashed:
         versions.setdefault(end.type_hash, set()).add(end.node_full_name)
     if len(versions) > 1:
-        who = " | ".join(sorted(listed(names) for names in versions.values()))
+        of_hash = distros_by_hash(next(iter(types)))
+        who = " | ".join(
+            sorted(
+                f"{listed(names)} ({_definition(of_hash, each)})"
+                for each, names in versions.items()
+            )
+        )
         yield Diagnosis(
             Rating.PROBLEM,
             TOPICS,
             topic,
             f"{next(iter(types))} has {len(versions)} definitions: {who}",
             "they cannot communicate: install the same version of its package"
-            " on both sides",
+            f" on both sides, or start Navette with {DISTRO_VARIABLE}=NAME",
             {"hashes": {each: sorted(names) for each, names in versions.items()}},
         )
+
+
+def _definition(distros: dict[str, list[str]], type_hash: str) -> str:
+    """Return the start of a hash, and the distributions of ROS 2 that it belongs to."""
+    known = ", ".join(distros.get(type_hash, ()))
+    start = type_hash.removeprefix("RIHS01_")[:8]
+    return f"{known or 'of no known distribution'}, hash {start}…"
 
 
 def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from navette import msgs
 from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
-from navette.msgs.registry import DEFINITIONS
+from navette.msgs.registry import DEFINITIONS, prefer_interfaces
 from navette.ros2.workspace.manifest import FILE_NAME, is_package_name, read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
@@ -96,7 +96,7 @@ def activate(start: Path | None = None) -> tuple[Path, ...]:
     """
     added = []
     for package in _first_of_each(_not_built_in(start)):
-        if package.has_interfaces and package.name not in msgs.packages():
+        if package.has_interfaces:
             _add_interfaces(package)
         folder = package.python_path
         if folder is not None and str(folder) not in sys.path:
@@ -106,7 +106,12 @@ def activate(start: Path | None = None) -> tuple[Path, ...]:
 
 
 def _add_interfaces(package: Package) -> None:
-    if package.folder.name == package.name:
+    if (DEFINITIONS / package.name).is_dir():
+        if package.origin is Origin.SOURCE:
+            prefer_interfaces(package.name, package.folder)
+    elif package.name in msgs.packages():
+        return
+    elif package.folder.name == package.name:
         # Read on first use: the types may use those of packages that are added later.
         msgs.add_interface_path(package.folder.parent)
     else:

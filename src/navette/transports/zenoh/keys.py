@@ -6,6 +6,8 @@ As in rmw_zenoh (Jazzy from 0.2.4, Kilted, Rolling).
 import re
 
 from navette.errors import DecodeError, InvalidValueError
+from navette.msgs import type_hash
+from navette.msgs.registry import distro
 
 _TYPE = re.compile(r"([A-Za-z]\w*)/(msg|srv|action)/([A-Za-z]\w*)", re.ASCII)
 _DDS_TYPE = re.compile(r"([A-Za-z]\w*)::(msg|srv|action)::dds_::([A-Za-z]\w*)_", re.A)
@@ -32,6 +34,11 @@ def ros_type_name(dds_name: str) -> str:
     if match is None:
         raise DecodeError(f"{dds_name!r} is not the DDS name of a ROS 2 type")
     return "/".join(match.groups())
+
+
+def wire_hash(type_name: str) -> str:
+    """Return the hash of a type in keys and tokens; Humble's have a word instead."""
+    return "TypeHashNotSupported" if distro() == "humble" else type_hash(type_name)
 
 
 def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:

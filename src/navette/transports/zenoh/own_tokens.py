@@ -5,8 +5,8 @@ import threading
 
 import zenoh
 
-from navette.msgs import type_hash
 from navette.transports.base import Endpoint, EndpointKind, NodeInfo
+from navette.transports.zenoh.keys import wire_hash
 from navette.transports.zenoh.qos_text import announced
 from navette.transports.zenoh.session import ZenohSession
 from navette.transports.zenoh.token_pool import TokenPool
@@ -102,7 +102,7 @@ class OwnTokens:
             node=node,
             topic=endpoint.topic,
             type_name=endpoint.type_name,
-            type_hash=type_hash(endpoint.type_name),
+            type_hash=wire_hash(endpoint.type_name),
             qos=announced(endpoint.qos, offers=offers),
         )
         return self._pool.take(token) if self._reuses_endpoints else (token, 0)

@@ -19,7 +19,6 @@ from navette.msgs.nav2_msgs.action import (
     NavigateThroughPoses,
     NavigateToPose,
 )
-from navette.msgs.nav2_msgs.msg import MissedWaypoint
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.navigation.missions.navigation import (
@@ -32,6 +31,7 @@ from navette.navigation.missions.navigation import (
 from navette.navigation.missions.params import MissionParams, tree_path
 from navette.navigation.missions.robot.node import NodeRobot, stamped
 from navette.navigation.missions.sequence import CANCELED, REACHED
+from navette.navigation.servers.distributions import add_missed_waypoint, poses_in
 from navette.runtime.action import (
     ActionClient,
     ActionServer,
@@ -140,11 +140,12 @@ class NavigationServers:
         goal = handle.request
         result = NavigateThroughPoses.Result()
         tree = self._tree(goal, self._params.through_poses_tree)
-        if not goal.poses:
+        poses = poses_in(goal.poses)
+        if not poses:
             result.error_msg = NO_GOALS
             handle.abort()
             return result
-        await self._navigate(handle, goal.poses, tree, result, through=True)
+        await self._navigate(handle, poses, tree, result, through=True)
         return result
 
     @staticmethod
@@ -252,8 +253,8 @@ class NavigationServers:
 
 
 def _note_missed(result: Any, index: int, pose: PoseStamped, of_goal: Any) -> None:
-    missed = MissedWaypoint(index=index, goal=pose, error_code=of_goal.error_code)
-    result.missed_waypoints = [*result.missed_waypoints, missed]
+    code, text = of_goal.error_code, of_goal.error_msg
+    add_missed_waypoint(result, index, pose, code, text)
     result.error_msg = of_goal.error_msg
 
 

@@ -25,6 +25,7 @@ from navette.navigation.planning.path_queries import (
 )
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
+from navette.navigation.servers.distributions import poses_in
 from navette.runtime import Stopwatch
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
@@ -119,7 +120,7 @@ class PathServer:
         self._serve(
             ComputePathThroughPoses,
             "compute_path_through_poses",
-            lambda goal: list(goal.goals),
+            lambda goal: poses_in(goal.goals),
             accepts,
         )
         node.create_service(IsPathValid, "is_path_valid", self._check_path)
