@@ -11,8 +11,8 @@ Which code a name stands for, first match first:
    installed or on ``PYTHONPATH``, else Navette's.
 4. ``msg``, ``srv`` and ``action`` of an interface package: Navette's classes, made from
    the ``.msg``, ``.srv`` and ``.action`` files; its nodes accept no others. Definitions
-   of a workspace take precedence over those that Navette contains. Further modules of
-   such a package come from where it is installed.
+   of a workspace precede Navette's. Further modules of such a package come from where
+   it is installed.
 
 With ``instead_of_ros``, packages that belong to the ROS 2 installation count as not
 installed: they call rclpy's C extension, and Navette's nodes have no handles for it.
