@@ -75,7 +75,10 @@ class TopicSubscription {
     if (this.#isScheduled || this.#timer !== undefined) return;
     const now = performance.now();
     let waitMs = Infinity;
-    for (const listener of this.listeners) waitMs = Math.min(waitMs, listener.isEvery ? 0 : listener.dueMs - now);
+    for (const listener of this.listeners) {
+      if (!listener.isEvery) waitMs = Math.min(waitMs, listener.dueMs - now);
+      else if (this.#queue.length > 0) waitMs = 0;
+    }
     if (waitMs === Infinity) return;
     if (document.hidden) waitMs = Math.max(waitMs, 1000); // no frames are drawn
     if (waitMs > 1) {

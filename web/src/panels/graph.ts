@@ -65,7 +65,11 @@ class GraphPanel implements PanelInstance {
     const connected = names.filter((name) => edges.some(({ from, to }) => from === name || to === name));
     const loose = names.filter((name) => !connected.includes(name));
     const layout = layOut(connected, edges);
-    this.#drawing.replaceChildren(this.#picture(layout, edges, loose, states));
+    const picture = this.#picture(layout, edges, loose, states);
+    // Fitted to the panel, but not below a size at which names are readable.
+    const width = Number(picture.getAttribute("width"));
+    picture.style.width = `clamp(${Math.round(0.7 * width)}px, 100%, ${width}px)`;
+    this.#drawing.replaceChildren(picture);
     this.#mark();
   };
 

@@ -111,9 +111,9 @@ class ParametersPanel implements PanelInstance {
     const saved = h("span", { class: "parameters-saved good", "aria-hidden": "true" }, "set");
     const meaning = (info.meaning ?? "").replace(/ \[[^\]]*\]$/, "");
     const isWide = typeof info.value === "object" || (typeof info.value === "string" && input instanceof HTMLInputElement);
-    const limits = info.low !== undefined && info.high !== undefined ? `${valueText(info.low)} … ${valueText(info.high)}` : (info.allowed ?? "");
+    const limits = info.low !== undefined && info.high !== undefined ? `${valueText(info.low)} … ${valueText(info.high)}` : (info.allowed ?? "").replaceAll(">=", "≥").replaceAll("<=", "≤");
     const notes = [meaning, limits && !(input instanceof HTMLSelectElement) && `Allowed: ${limits}`, info.isReadOnly && "Read only"].filter((text): text is string => Boolean(text));
-    const element = h("div", { class: `parameters-row${isWide ? " parameters-wide" : ""}` },
+    const element = h("div", { class: `parameters-row${isWide ? " parameters-wide" : typeof info.value === "boolean" ? " parameters-switch" : ""}` },
       h("div", { class: "parameters-name", title: name }, short, saved),
       h("div", { class: "parameters-value" }, slider, input, unit ? h("span", { class: "parameters-unit quiet" }, unit) : null),
       notes.length > 0 ? h("p", { class: "hint" }, notes.join(" · ")) : null, refusal);

@@ -16,6 +16,7 @@ import { csvOf, PlotSeries } from "./plot_series";
 const COLOURS = ["thread", "laser", "mark", "good", "sea", "wait", "bad", "trail"];
 const SPANS_S = [10, 30, 60, 300, 1800];
 const DRAW_HZ = 10;
+const LEAST_SPAN = 1e-6;
 
 interface Curve {
   readonly path: FieldPath;
@@ -52,7 +53,7 @@ export class PlotPanel implements PanelInstance {
     const { settings, connection } = context;
     this.#path = h("input", { type: "text", class: "grow plot-path", placeholder: "/topic.field", "aria-label": "Path of a number", list: this.#suggestions.id,
       spellcheck: "false", autocomplete: "off", oninput: () => this.#suggest(), onfocus: () => this.#suggest() });
-    const form = h("form", { class: "row grow", onsubmit: (event: Event) => {
+    const form = h("form", { class: "plot-form", onsubmit: (event: Event) => {
       event.preventDefault();
       this.#submit();
     } }, this.#path, this.#suggestions, h("button", { type: "submit", title: "Add to the plot", "aria-label": "Add to the plot" }, icon("plus")));
@@ -196,7 +197,8 @@ export class PlotPanel implements PanelInstance {
     if (!this.#isZoomed && !this.#isPaused) {
       const last = Math.max(...this.#curves.map(({ samples }) => samples.lastTime ?? -Infinity));
       if (!Number.isFinite(last)) return;
-      const begin = last - Number(this.#span.value);
+      const first = Math.min(...this.#curves.map(({ samples }) => samples.firstTime ?? Infinity));
+      const begin = Math.max(last - Number(this.#span.value), Math.min(first, last - 1));
       const tables = this.#curves.map(({ samples }) => samples.since(begin) as unknown as uPlot.AlignedData);
       const data = tables.length > 1 ? uPlot.join(tables) : tables[0]!;
       this.#plot.setData(data, false);
@@ -286,6 +288,8 @@ export class PlotPanel implements PanelInstance {
 
 function paddedRange(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
-  const margin = high > low ? 0.08 * (high - low) : Math.max(Math.abs(high) * 0.1, 0.1);
+  // Rounding noise is not magnified to the height of the panel.
+  const least = Math.max(LEAST_SPAN, 1e-6 * Math.abs(high));
+  const margin = high - low > least ? 0.08 * (high - low) : Math.max(Math.abs(high) * 0.1, 0.1);
   return [low - margin, high + margin];
 }

@@ -12,6 +12,10 @@ export class PlotSeries {
     return this.#end - this.#begin;
   }
 
+  get firstTime(): number | null {
+    return this.length > 0 ? this.#times[this.#begin]! : null;
+  }
+
   get lastTime(): number | null {
     return this.length > 0 ? this.#times[this.#end - 1]! : null;
   }

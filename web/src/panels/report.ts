@@ -9,6 +9,7 @@ import { type Report, readReport } from "./report_page";
 class ReportPanel implements PanelInstance {
   readonly #body: HTMLElement;
   readonly #page = h("div", { class: "report-page" });
+  readonly #bar = h("div", { class: "bar" });
   readonly #name = h("span", { class: "hint grow" });
   readonly #empty: HTMLElement;
   readonly #root = this.#page.attachShadow({ mode: "open" });
@@ -31,7 +32,9 @@ class ReportPanel implements PanelInstance {
       const file = event.dataTransfer?.files[0];
       if (file) void this.#open(file);
     });
-    container.append(h("div", { class: "panel" }, h("div", { class: "bar" }, this.#name, choose(), input), this.#body));
+    container.append(h("div", { class: "panel" }, this.#bar, input, this.#body));
+    this.#bar.append(this.#name, choose());
+    this.#bar.hidden = true;
     this.#page.hidden = true;
   }
 
@@ -55,6 +58,7 @@ class ReportPanel implements PanelInstance {
     this.#root.replaceChildren(report.content);
     this.#page.hidden = false;
     this.#empty.hidden = true;
+    this.#bar.hidden = false;
     this.#name.textContent = report.title;
     this.context.setTitle(report.title);
   }

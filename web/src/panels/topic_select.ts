@@ -38,6 +38,7 @@ export function topicSelect(
     for (const name of names) choices.push(new Option(name, name, false, name === value));
     if (value && !names.includes(value)) choices.push(new Option(`${value} (not published)`, value, false, true));
     element.replaceChildren(...choices);
+    element.hidden = options.none !== undefined && names.length === 0 && !value;
     element.value = value;
   };
   element.addEventListener("change", () => {
