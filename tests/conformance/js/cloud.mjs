@@ -16,20 +16,21 @@ try {
   page.on("pageerror", (error) => problems.push(String(error)));
   await page.goto(url);
   const until = (check) => page.waitForFunction(check, null, { timeout: 60_000 });
-  const button = page.locator("tr", { hasText: "PointCloud2" }).locator("button");
-  const offered = await button.textContent();
-  await button.click();
-  await until(() => [...view.layers.values()].some((layer) => layer.xyz?.length > 0));
-  await until(() => new Set(new Uint32Array(view.context.getImageData(0, 0, view.canvas.width, view.canvas.height).data.buffer)).size > 20);
+  await page.waitForFunction(() => globalThis.navette?.scene.displays.all.some(({ type }) => type.endsWith("PointCloud2")), null, { timeout: 60_000 });
+  await page.evaluate(() => navette.open("displays"));
+  const box = page.getByRole("checkbox", { name: "/velodyne_points" });
+  const offered = await box.isChecked() ? "shown" : "hidden";
+  await box.check();
+  const drawn = () => {
+    const { canvas } = navette.scene, { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size > 20;
+  };
+  await until(drawn);
   const seen = await page.evaluate(() => {
-    const [topic, layer] = [...view.layers].find(([, each]) => each.xyz);
-    const started = performance.now();
-    for (let turn = 0; turn < 10; turn++) drawView(view);
-    return { topic, frame: layer.frame, first: [...layer.xyz.subarray(0, 3)], points: layer.xyz.length / 3,
-      draw_ms: (performance.now() - started) / 10 };
+    const display = navette.scene.displays.all.find(({ type }) => type.endsWith("PointCloud2"));
+    const [{ frame, primitives: [{ positions }] }] = display.parts();
+    return { topic: display.topic, frame, first: [...positions.subarray(0, 3)], points: positions.length / 3 };
   });
-  await page.click("#fit");
-  await page.waitForFunction(() => !view.dirty);
   if (screenshot) await page.screenshot({ path: screenshot });
   console.log(JSON.stringify({ ...seen, offered, problems }));
 } finally {

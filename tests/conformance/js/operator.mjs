@@ -28,13 +28,17 @@ try {
   await shows("Navigation");
   const box = await page.locator("#stop").boundingBox();
   const seen = { problems, stop: [Math.round(box.width), Math.round(box.height), box.y + box.height <= 800] };
-  // No part of the page is below the buttons, however it is scrolled.
-  seen.covered = await page.evaluate(() => {
-    const main = document.querySelector("main"), top = document.querySelector("#operate").getBoundingClientRect().top;
-    return [0, 300, 1e6].map((at) => { main.scrollTop = at; return main.getBoundingClientRect().bottom - top; });
-  });
+  // Nothing covers Stop, with or without a panel.
+  seen.reachable = [];
+  for (const panel of ["topics", "log"]) {
+    seen.reachable.push(await page.evaluate(() => {
+      const { x, y, width, height } = document.querySelector("#stop").getBoundingClientRect();
+      return document.elementFromPoint(x + width / 2, y + height / 2)?.id === "stop";
+    }));
+    await page.evaluate((id) => navette.open(id), panel);
+  }
   seen.wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  await page.evaluate(() => { document.querySelector("main").scrollTop = 0; });
+  await page.getByRole("button", { name: "Log", exact: true }).click(); // closes the sheet
 
   // Each press is a takeover or a change of direction.
   for (let number = 0; number < Number(tries); number++) {
@@ -78,6 +82,7 @@ try {
   seen.cancelled = await page.textContent("#answer");
   await until(() => document.querySelector("#goal").textContent === "–");
   // Space in a text field is a space.
+  await page.getByRole("button", { name: "Goal by coordinates" }).click();
   await page.fill("#x", "1");
   await page.press("#x", "Space");
   await pause(300);

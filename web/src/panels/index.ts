@@ -12,3 +12,5 @@ import "./behavior_tree";
 import "./diagnostics";
 import "./playback";
 import "./report";
+import "./frames";
+import "./nodes";

@@ -15,10 +15,10 @@ const POINT_SIZE = { value: 3, low: 1, high: 12, unit: "px" };
 const LINE_SIZE = { value: 2.5, low: 1, high: 12, unit: "px" };
 const ARROW_SIZE = { value: 16, low: 6, high: 60, unit: "px" };
 
-/** Types in the order of drawing. */
+/** Types in the order of drawing. Clouds are large: they are subscribed to on request. */
 const KINDS: readonly [type: string, make: Maker, traits: Omit<DisplayTraits, "title">][] = [
   ["nav_msgs/msg/OccupancyGrid", GridMapDisplay, { order: 10, isShown: true, rateHz: 5, choices: { label: "Colours", values: ["map", "cost"] } }],
-  ["sensor_msgs/msg/PointCloud2", CloudDisplay, { order: 30, isShown: true, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 10, choices: { label: "Colour by", values: ["height", "intensity", "flat"] } }],
+  ["sensor_msgs/msg/PointCloud2", CloudDisplay, { order: 30, isShown: false, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 10, choices: { label: "Colour by", values: ["height", "intensity", "flat"] } }],
   ["sensor_msgs/msg/LaserScan", ScanDisplay, { order: 31, isShown: true, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 20 }],
   ["sensor_msgs/msg/Range", RangeDisplay, { order: 32, isShown: true, colour: "laser", size: LINE_SIZE, hasDecay: true, rateHz: 10 }],
   ["visualization_msgs/msg/MarkerArray", MarkersDisplay, { order: 35, isShown: true, every: true }],
@@ -41,7 +41,6 @@ function traitsOf(topic: string, type: string, has: (topic: string) => boolean):
     const values = isCost ? ["cost", "map"] : ["map", "cost"];
     return { order, isShown: topic === "/map" || !has("/map"), opacity: isCost ? 0.7 : 1, choices: { label: "Colours", values } };
   }
-  if (type.endsWith("/PointCloud2")) return { isShown: !/costmap|map\/points/.test(topic) };
   if (topic === "/plan" || topic === "/plan_smoothed") return { isShown: !has("/path") };
   if (/trajector|rollout|candidates/.test(topic)) return { order: 49 };
   if (topic === "/amcl_pose" || topic.startsWith("/planner/") || topic.endsWith("/published_footprint")) return { isShown: false };

@@ -158,8 +158,9 @@ export class App {
       h("hr"),
       h("h2", {}, "Other programs"),
       copy,
+      query === "" && h("a", { class: "item", id: "open", href: foxgloveLink(address), target: "_blank", rel: "noopener" }, icon("upload"), h("span", {}, "Open in Foxglove")),
       h("a", { class: "item", href: `./layout.json${query}`, download: "navette-layout.json" }, icon("download"), h("span", {}, "Layout for Foxglove")),
-    ];
+    ].filter((node) => node !== false);
   }
 
   #save(): void {
@@ -203,6 +204,11 @@ export class App {
       else if (/token/i.test(reason)) dialog.ask(reason, this.#token !== "");
     });
   }
+}
+
+/** Only without a token: a link would send it to another site. */
+function foxgloveLink(address: string): string {
+  return `https://app.foxglove.dev/~/view?ds=foxglove-websocket&ds.url=${encodeURIComponent(address)}`;
 }
 
 /** This page's server, or another: `?ds=ws://host:port`. */

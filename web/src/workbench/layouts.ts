@@ -27,6 +27,9 @@ export interface Layout {
 const KEY = "navette.layout";
 const PLAIN_SCENE: SceneSettings = { fixedFrame: null, isThreeDimensional: false, mode: "fit" };
 
+/** What most people plot first: commanded and driven speed. */
+const SPEEDS = ["/cmd_vel.linear.x", "/odom/filtered.twist.twist.linear.x"];
+
 function panels(...kinds: (string | readonly [string, Record<string, unknown>])[]): OpenPanel[] {
   return kinds.map((each) => {
     const [kind, settings] = typeof each === "string" ? [each, {}] : each;
@@ -42,7 +45,7 @@ export const SHIPPED: readonly Layout[] = [
     places: {
       left: panels("displays", "topics", "nodes"),
       right: panels("tree", "parameters", "image"),
-      below: panels("plot", "log", "diagnostics"),
+      below: panels(["plot", { paths: SPEEDS }], "log", "diagnostics"),
     },
     open: [],
     docking: null,
@@ -55,7 +58,7 @@ export const SHIPPED: readonly Layout[] = [
     places: {
       left: panels("displays", "frames", "graph"),
       right: panels("raw", "parameters", "run"),
-      below: panels("plot", "topics", "log"),
+      below: panels(["plot", { paths: SPEEDS }], "topics", "log"),
     },
     open: ["left", "right"],
     docking: null,
@@ -68,7 +71,7 @@ export const SHIPPED: readonly Layout[] = [
     places: {
       left: panels("displays", "topics"),
       right: panels("raw", "image", "diagnostics"),
-      below: panels("playback", "plot", "log"),
+      below: panels("playback", ["plot", { paths: SPEEDS }], "log"),
     },
     open: ["below"],
     docking: null,

@@ -1,0 +1,100 @@
+/** The tree of frames: parents and children, their newest transform, its age and rate. */
+
+import { fixed } from "../robot/text";
+import { yawOf } from "../transforms/transform";
+import type { Link } from "../transforms/transform_tree";
+import { h, setText } from "../ui/dom";
+import { every } from "../ui/frames";
+import { emptyState } from "./empty";
+import { registerPanel, type PanelContext, type PanelInstance } from "./panel";
+import "./frames.css";
+
+interface Row {
+  readonly age: HTMLElement;
+  readonly place: HTMLElement;
+}
+
+class FramesPanel implements PanelInstance {
+  readonly #list = h("ul", { class: "frames-tree" });
+  readonly #empty = emptyState("frames", "No frames yet", "No node has published on /tf or /tf_static.");
+  readonly #rows = new Map<string, Row>();
+  readonly #end: () => void;
+  #stop: (() => void) | null = null;
+
+  constructor(
+    container: HTMLElement,
+    private readonly context: PanelContext,
+  ) {
+    container.append(h("div", { class: "panel frames" }, h("div", { class: "body" }, this.#list, this.#empty.element)));
+    this.#end = context.transforms.onStructure(() => {
+      if (this.#stop) this.#build();
+    });
+  }
+
+  setVisible(isVisible: boolean): void {
+    this.#stop?.();
+    this.#stop = isVisible ? every(2, () => this.#draw()) : null;
+    if (isVisible) this.#build();
+  }
+
+  dispose(): void {
+    this.#stop?.();
+    this.#end();
+  }
+
+  #build(): void {
+    const { links, frames } = this.context.transforms;
+    this.#rows.clear();
+    const children = new Map<string, string[]>();
+    for (const frame of frames) {
+      const parent = links.get(frame)?.parent ?? "";
+      children.set(parent, [...(children.get(parent) ?? []), frame]);
+    }
+    this.#list.replaceChildren(...this.#branch("", children, new Set()));
+    this.#list.hidden = frames.length === 0;
+    this.#empty.element.hidden = frames.length > 0;
+    this.#draw();
+  }
+
+  #branch(parent: string, children: ReadonlyMap<string, string[]>, seen: Set<string>): HTMLElement[] {
+    return (children.get(parent) ?? []).filter((frame) => !seen.has(frame)).map((frame) => {
+      seen.add(frame);
+      const [age, place] = [h("span", { class: "frames-age number" }), h("small", { class: "frames-place number" })];
+      this.#rows.set(frame, { age, place });
+      const below = this.#branch(frame, children, seen);
+      return h("li", {}, h("div", { class: "frames-row" }, h("code", {}, frame), age), place, below.length > 0 && h("ul", {}, ...below));
+    });
+  }
+
+  #draw(): void {
+    const { transforms, connection } = this.context;
+    for (const [frame, { age, place }] of this.#rows) {
+      const link = transforms.links.get(frame);
+      setText(age, link ? ageOf(link, connection.nowNs) : "root");
+      setText(place, link ? placeText(link) : "");
+      age.classList.toggle("bad", link !== undefined && !link.isStatic && link.stampNs > 0n && secondsOf(link, connection.nowNs) > 2);
+    }
+  }
+}
+
+function secondsOf({ stampNs }: Link, nowNs: bigint): number {
+  return Math.max(0, Number(nowNs - stampNs) / 1e9);
+}
+
+function ageOf(link: Link, nowNs: bigint): string {
+  if (link.isStatic) return "static";
+  return link.stampNs === 0n ? "from odometry" : `${secondsOf(link, nowNs).toFixed(1)} s old`;
+}
+
+function placeText({ parent_T_child: { translation: [x, y, z], rotation } }: Link): string {
+  return `${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} m · ${fixed((yawOf(rotation) * 180) / Math.PI, 0)}°`;
+}
+
+registerPanel({
+  id: "frames",
+  title: "Frames",
+  icon: "frames",
+  place: "left",
+  hint: "The tree of transforms, with their age.",
+  create: (container, context) => new FramesPanel(container, context),
+});
