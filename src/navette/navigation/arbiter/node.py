@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from navette.errors import ParameterError
 from navette.msgs import topics
+from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor
 from navette.msgs.std_msgs.msg import Bool, Empty
@@ -79,6 +80,12 @@ class ArbiterNode(StageNode):
             topics.CMD_VEL,
             "commands of programs beside the arbiter (`topics.external`)",
         ),
+        Input.of(
+            topics.DRIVE,
+            "commands of programs that steer a car beside the arbiter (`topics.drive`)",
+            checks_contents=False,
+            callback="on_command",
+        ),
         _commands(
             topics.CMD_VEL_ASSISTED,
             "commands of the operator after a check (`topics.assisted_teleop`)",
@@ -143,7 +150,7 @@ class ArbiterNode(StageNode):
         return (
             *(
                 replace(
-                    command,
+                    usual[topics.DRIVE.name] if self._is_drive(each.topic) else command,
                     topic=each.topic,
                     callback=partial(self.on_command, name),
                     ignores_own=self._is_output(each.topic),
@@ -168,17 +175,18 @@ class ArbiterNode(StageNode):
             return self.OUTPUTS
         return replace(command, type=_STAMPED, other_types=(command.type,)), *others
 
-    def on_command(self, name: str, msg: Twist | TwistStamped) -> None:
+    def on_command(
+        self, name: str, msg: Twist | TwistStamped | AckermannDriveStamped
+    ) -> None:
         """Pass on a command if its source has the highest priority."""
-        twist = msg.twist if isinstance(msg, TwistStamped) else msg
-        now_ns = self._now_ns
+        velocity, now_ns = _velocity(msg), self._now_ns
         if name in self._expiries:
             self._expiries[name].reset()
-        self._send(self._arbiter.receive(name, _velocity(twist), now_ns))
+        self._send(self._arbiter.receive(name, velocity, now_ns))
         refusal = self._arbiter.refusal(name)
         if refusal:
             self.get_logger().error(
-                f"{refusal} of {name}: {_velocity(twist)}; the limits are "
+                f"{refusal} of {name}: {velocity}; the limits are "
                 f"{self.params.max_speed_mps:g} m/s and "
                 f"{self.params.max_turn_rate_radps:g} rad/s (0: none)",
                 throttle_duration_sec=1.0,
@@ -258,7 +266,7 @@ class ArbiterNode(StageNode):
             params.priority,
             timeout_ns=round(params.timeout * 1e9),
             hold_ns=round(params.hold * 1e9),
-            is_direct=self._is_output(params.topic),
+            is_direct=self._is_output(params.topic) or self._is_drive(params.topic),
             scales=params.over_limit == "scale",
         )
 
@@ -275,6 +283,11 @@ class ArbiterNode(StageNode):
     def _is_output(self, topic: str) -> bool:
         resolve = self.resolve_topic_name
         return resolve(topic) == resolve(topics.CMD_VEL.name)
+
+    def _is_drive(self, topic: str) -> bool:
+        """Return whether a topic carries speeds and steering angles to the wheels."""
+        resolve = self.resolve_topic_name
+        return resolve(topic) == resolve(topics.DRIVE.name)
 
     def _send(self, command: Velocity | None) -> None:
         """Publish a command, then the commander if it has changed."""
@@ -336,6 +349,10 @@ class ArbiterNode(StageNode):
         return ",".join(sorted(found - {own}))
 
 
-def _velocity(twist: Twist) -> Velocity:
+def _velocity(msg: Twist | TwistStamped | AckermannDriveStamped) -> Velocity:
+    """Return the velocity of a command; of a steered one the speed alone."""
+    if isinstance(msg, AckermannDriveStamped):
+        return Velocity(msg.drive.speed)
+    twist = msg.twist if isinstance(msg, TwistStamped) else msg
     linear, angular = twist.linear, twist.angular
     return Velocity(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)

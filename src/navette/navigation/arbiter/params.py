@@ -82,6 +82,9 @@ SOURCES: dict[str, CommandSourceParams] = {
     "external": CommandSourceParams(
         topic=topics.CMD_VEL.name, priority=50, hold=1.0, over_limit="scale"
     ),
+    "drive": CommandSourceParams(
+        topic=topics.DRIVE.name, priority=50, hold=1.0, over_limit="scale"
+    ),
     "operator": CommandSourceParams(
         topic=topics.CMD_VEL_TELEOP.name, priority=100, hold=1.0, over_limit="scale"
     ),

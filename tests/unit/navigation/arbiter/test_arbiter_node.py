@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from navette.errors import ParameterError
+from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.navigation.arbiter.node import ArbiterNode
@@ -65,7 +66,7 @@ def test_the_operator_takes_over_in_the_same_instant(bench: Bench) -> None:
     assert bench.send("/cmd_vel_teleop", twist(-0.1)) == [-0.1]
     assert bench.commander == "operator"
     assert bench.value("nodes") == "/harness"
-    assert bench.value("masked_topics") == "/cmd_vel,/cmd_vel_nav"
+    assert bench.value("masked_topics") == "/cmd_vel,/drive,/cmd_vel_nav"
     assert bench.send("/cmd_vel_nav", twist(0.3)) == []
 
 
@@ -101,6 +102,30 @@ def test_a_program_that_publishes_the_output_masks_navigation(bench: Bench) -> N
     assert bench.send("/cmd_vel_nav", twist(0.3)) == []
     assert bench.send("/cmd_vel_teleop", twist(-0.1)) == [-0.1]
     assert bench.send("/cmd_vel", twist(0.1)) == [0.1, -0.1]  # overruled
+
+
+def test_a_program_that_steers_a_car_masks_navigation(bench: Bench) -> None:
+    """On ``/drive`` the command reaches the wheels without the arbiter."""
+    steered = AckermannDriveStamped()
+    steered.drive.speed, steered.drive.steering_angle = 0.5, 0.1
+    bench.send("/cmd_vel_nav", twist(0.3))
+    assert bench.send("/drive", steered) == []
+    assert (bench.commander, bench.value("nodes")) == ("drive", "/harness")
+    assert bench.send("/cmd_vel_nav", twist(0.3)) == []
+    assert bench.send("/cmd_vel_teleop", twist(-0.1)) == [-0.1]
+    assert bench.commander == "operator"
+    assert bench.send("/drive", steered) == [-0.1]  # overruled
+    bench.send("/emergency_stop", Bool(data=True))
+    assert bench.send("/drive", steered) == [0.0]
+    assert bench.commander == "emergency_stop"
+
+
+def test_a_car_stops_when_the_program_that_steers_it_falls_silent(bench: Bench) -> None:
+    bench.send("/drive", AckermannDriveStamped())
+    bench.graph.run_for(0.6)
+    assert bench.commands.last == Twist()
+    bench.graph.run_for(1.0)
+    assert bench.commander == "idle"
 
 
 def test_the_emergency_stop_latches(bench: Bench) -> None:
