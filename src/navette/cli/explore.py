@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.text import Text
 
 from navette.cli.app import (
+    NO_METHODS,
     Headless,
     Json,
     MaxTime,
@@ -21,7 +22,9 @@ from navette.cli.app import (
     World,
 )
 from navette.cli.arguments import parse_speed
+from navette.cli.methods import MethodOptions
 from navette.cli.options import Option
+from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from navette.navigation.missions.explore.frontiers import Frontier
@@ -51,6 +54,7 @@ def explore(
         bool,
         Option("--running", help="Explore with the running robot, not the simulator."),
     ] = False,
+    methods: MethodOptions = NO_METHODS,
     headless: Headless = False,
     speed: Speed = None,
     seed: Seed = 0,
@@ -66,6 +70,12 @@ def explore(
     contact.
     """
     screen = _Screen()
+    if running and methods != NO_METHODS:
+        raise InvalidValueError(
+            "--running explores with the robot as it runs: --planner, --controller, "
+            "--costmap, --mapping, --localization, --replace and -p choose the "
+            "methods of a simulated one; leave them out"
+        )
     if running:
         code = _explore_running(screen, max_time, as_json=as_json)
     else:
@@ -77,6 +87,9 @@ def explore(
             headless=headless,
             speed=parse_speed(speed or ("max" if headless else "1")),
             seed=seed,
+            methods=methods.chosen,
+            replacements=methods.replacements,
+            parameters=methods.parameters,
             max_time_s=max_time,
             port=port,
             share=share,
@@ -123,10 +136,10 @@ def _explore_simulated(screen: _Screen, options: Any, *, as_json: bool) -> int:
     from navette.cli.interruption import sigterm_as_interrupt
 
     with screen.console.status("starting", spinner="dots"):
+        from navette.cli.running import make_simulation
         from navette.navigation.stack.exploring import add_explorer
-        from navette.navigation.stack.simulation import Simulation
 
-        simulation = Simulation(options)
+        simulation = make_simulation(options)
     try:
         node = add_explorer(simulation)
         node.on_goal = screen.on_goal

@@ -1,6 +1,7 @@
 """Run a simulation with progress on the terminal and an exit code."""
 
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from navette.cli.interruption import INTERRUPTED, sigterm_as_interrupt
@@ -9,6 +10,7 @@ from navette.errors import CallbackError
 from navette.navigation.stack.options import RunOptions
 
 if TYPE_CHECKING:
+    from navette.navigation.stack.monitor import RunProgress
     from navette.navigation.stack.simulation import Simulation
     from navette.sim import Scene
 
@@ -25,24 +27,32 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
     """
     screen = StatusScreen(options)
     with screen.starting():
-        # Imported here: the first import compiles the kernels.
-        from navette.navigation.stack.simulation import Simulation
-
-        makers = {}
-        if options.replacements:
-            from navette.ros2.names.node_classes import node_makers
-
-            makers = node_makers(options.replacements)
-        simulation = Simulation(
-            options,
-            on_change=screen.on_change,
-            scene=_generated(options.world),
-            replacements=makers,
-        )
+        simulation = make_simulation(options, screen.on_change)
     try:
         return _drive(simulation, screen, as_json=as_json)
     finally:
         simulation.close()
+
+
+def make_simulation(
+    options: RunOptions,
+    on_change: Callable[["RunProgress"], None] = lambda progress: None,
+) -> "Simulation":
+    """Return the simulation of the options: own nodes and generated worlds, too."""
+    # Imported here: the first import compiles the kernels.
+    from navette.navigation.stack.simulation import Simulation
+
+    makers = {}
+    if options.replacements:
+        from navette.ros2.names.node_classes import node_makers
+
+        makers = node_makers(options.replacements)
+    return Simulation(
+        options,
+        on_change=on_change,
+        scene=_generated(options.world),
+        replacements=makers,
+    )
 
 
 def _generated(world: str) -> "Scene | None":

@@ -1,0 +1,31 @@
+"""``navette explore``: its options choose the methods, as those of ``sim`` do."""
+
+import json
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from navette.cli.app import app
+
+PLANNER = """
+def plan(grid, start, goal):
+    print("planned by my own")
+    return None
+"""
+
+
+def test_methods_parameters_and_generated_worlds_are_taken(tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    own.write_text(PLANNER, encoding="utf-8")
+    words = ["explore", "rooms:1", "--headless", "--json", "--max-time", "6"]
+    words += ["--planner", f"{own}:plan", "-p", "planner.goal_tolerance_m=0.4"]
+    ended = CliRunner().invoke(app, words)
+    assert "planned by my own" in ended.stdout
+    report = json.loads(ended.stdout[ended.stdout.index("{") :])
+    assert report["goals"] >= 1
+
+
+def test_methods_of_a_running_robot_are_refused() -> None:
+    ended = CliRunner().invoke(app, ["explore", "--running", "--planner", "dijkstra"])
+    assert ended.exit_code != 0
+    assert "--planner" in str(ended.exception) + ended.stderr
