@@ -169,7 +169,7 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     assert seen["slider"] == ["0.5", "2"]
     assert "9.0" in seen["refusal"]
     assert_goal_arrived(program)
-    assert seen["layers"] == ["/map", "/lidar"]
+    assert seen["layers"] == ["/map", "/lidar", "/odom/filtered"]
     clicked = robot_of(program).goals[1].point
     assert [clicked.x, clicked.y] == pytest.approx(seen["place"], abs=0.05)
     assert robot_of(program).stands.wait(60.0)
