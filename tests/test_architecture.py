@@ -18,6 +18,7 @@ LINT = "from importlinter.cli import lint_imports_command as lint; lint()"
 FLOW = (
     "sim",
     "localization",
+    "slam",
     "costmap",
     "tracking",
     "mapping",

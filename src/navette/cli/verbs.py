@@ -48,6 +48,12 @@ VERBS = (
         panel=DRIVE,
     ),
     LazyCommand(
+        "slam",
+        "navette.cli.slam:slam",
+        "Build a map from a recording: scans and odometry in, map and trajectory out.",
+        panel=DRIVE,
+    ),
+    LazyCommand(
         "bench",
         "navette.cli.bench:bench",
         "Drive a set of worlds and measure success, contacts, time and score.",

@@ -41,6 +41,8 @@ LOCALIZATION_STATUS = StackTopic(
     "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", 1, True
 )
 PARTICLES = StackTopic("/particle_cloud", "nav2_msgs/msg/ParticleCloud", 1)
+SLAM_POSE = StackTopic("/pose", "geometry_msgs/msg/PoseWithCovarianceStamped")
+SLAM_MAP = StackTopic("/slam/map", "nav_msgs/msg/OccupancyGrid", 1, True)
 GNSS = StackTopic("/gnss_driver/odometry", "gnss_driver/msg/Gps", 1)
 DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 

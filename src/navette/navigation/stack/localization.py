@@ -7,6 +7,7 @@ from navette.errors import UnknownNameError
 from navette.navigation.localization.amcl.node import AmclNode
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.navigation.localization.localizer.node import LocalizerNode
+from navette.navigation.slam.node import SlamNode
 from navette.runtime import StageNode
 from navette.sim.params import SimParams
 
@@ -15,6 +16,7 @@ LOCALIZATIONS: Mapping[str, tuple[tuple[str, type[StageNode]], ...]] = MappingPr
         "truth": (("localizer", LocalizerNode),),
         "odometry": (("localizer", LocalizerNode),),
         "amcl": (("amcl", AmclNode),),
+        "slam": (("slam", SlamNode),),
     }
 )
 """Parameter ``localization`` of the simulator → name and class of the nodes."""

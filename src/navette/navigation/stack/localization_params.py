@@ -44,5 +44,13 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "initial_pose.y": y,
             "initial_pose.yaw": yaw,
         },
+        "slam": {
+            "map_frame": sim.map_frame,
+            "odom_frame": sim.odometry_frame,
+            "base_frame": sim.base_frame,
+            "start_x_m": x,
+            "start_y_m": y,
+            "start_yaw_rad": yaw,
+        },
     }
     return values

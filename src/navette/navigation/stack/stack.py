@@ -25,6 +25,7 @@ from navette.sim.node import SimNode
 FLOW = (
     "sim",
     "localization",
+    "slam",
     "costmap",
     "tracking",
     "mapping",

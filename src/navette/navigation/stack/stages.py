@@ -112,6 +112,15 @@ def amcl() -> None:
 
 
 @_program
+def slam() -> None:
+    """Run the SLAM."""
+    from navette.navigation.slam.node import SlamNode
+
+    text = "/lidar, /odom/filtered → /tf (map → odom), /pose, /slam/map"
+    _run_localization("slam", SlamNode, text)
+
+
+@_program
 def costmap() -> None:
     """Run the costmap."""
     from navette.navigation.costmap.node import CostmapNode

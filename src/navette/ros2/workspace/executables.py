@@ -19,6 +19,7 @@ _STAGES = (
     "ekf",
     "localizer",
     "amcl",
+    "slam",
     "costmap",
     "map_memory",
     "tracking",

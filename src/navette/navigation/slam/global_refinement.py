@@ -1,0 +1,122 @@
+"""Joint refinement of all key scans against the scans that overlap them.
+
+Each pair of overlapping scans contributes the normal equations of its corresponding
+points, linearised at the present poses, as an edge of the pose graph. The graph is
+solved and the correspondences are found again (Lu and Milios 1997, with distances along
+normals).
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.point_map import PointMap, make_point_map
+from navette.navigation.slam.pose_graph import GraphEdge, optimise
+from navette.navigation.slam.refinement import sum_equations
+from navette.navigation.slam.scan_graph import ScanGraph
+from navette.navigation.slam.scan_points import Points
+
+Matrix = NDArray[np.float64]
+Pair = tuple[int, int]
+
+_ROUNDS = 6
+# Rounds in which the pairs are chosen, and those with the whole search radius.
+_PAIRING = (0, 1, 4)
+_WIDE = 2
+# Partners of a scan: the ones just before it and some of all others near it.
+_PARTNERS = 8
+_BEFORE = 3
+_REACH_M = 6.0
+_CONVERGED_M = 1e-3
+
+
+def refine_all(graph: ScanGraph, params: SlamParams) -> None:
+    """Improve all poses of a graph whose loops are closed."""
+    if len(graph) < 2:
+        return
+    clouds = [each.points for each in graph.keys]
+    surfaces = [
+        make_point_map(each, params.match_radius_m) if len(each) else None
+        for each in clouds
+    ]
+    pairs: list[Pair] = []
+    for turn in range(_ROUNDS):
+        if turn in _PAIRING:
+            pairs = overlapping_pairs(graph)
+        radius = params.match_radius_m * (1.0 if turn < _WIDE else 0.5)
+        edges = [
+            edge
+            for i, j in pairs
+            if (
+                edge := _pair_edge(
+                    graph, (i, j), surfaces[i], clouds[j], radius, params
+                )
+            )
+        ]
+        poses = optimise(graph.poses, graph.motions + edges, steps=3).poses
+        moved = float(np.abs(poses - graph.poses)[:, :2].max())
+        graph.poses = poses
+        if moved < _CONVERGED_M and turn > _WIDE:
+            break
+
+
+def overlapping_pairs(graph: ScanGraph) -> list[Pair]:
+    """Return pairs (i, j), i < j, of key scans that look at the same place."""
+    from scipy.spatial import cKDTree
+
+    centers = graph.view_centers()
+    tree = cKDTree(centers)
+    pairs: set[Pair] = set()
+    for j, near in enumerate(tree.query_ball_point(centers, _REACH_M)):
+        earlier = np.array(sorted(i for i in near if i < j), np.int64)
+        if len(earlier) > _PARTNERS:
+            earlier = _spread_out(earlier, j, centers)
+        pairs.update((int(i), j) for i in earlier)
+    return sorted(pairs)
+
+
+def _spread_out(
+    earlier: NDArray[np.int64], j: int, centers: Matrix
+) -> NDArray[np.int64]:
+    """Choose the partners of a scan: the last ones, and others from near to far."""
+    recent, old = earlier[earlier >= j - _BEFORE], earlier[earlier < j - _BEFORE]
+    away = np.linalg.norm(centers[old] - centers[j], axis=1)
+    old = old[np.argsort(away, kind="stable")]
+    steps = np.linspace(0, len(old) - 1, _PARTNERS - len(recent)).astype(int)
+    return np.concatenate([recent, old[np.unique(steps)]])
+
+
+def _pair_edge(
+    graph: ScanGraph,
+    pair: Pair,
+    surface: PointMap | None,
+    points: Points,
+    radius_m: float,
+    params: SlamParams,
+) -> GraphEdge | None:
+    """Return the measurement of scan j in the frame of scan i, if they overlap."""
+    if surface is None or not len(points):
+        return None
+    i, j = pair
+    present = graph.pose(i).inverse() @ graph.pose(j)
+    information, gradient, quality = np.zeros((3, 3)), np.zeros(3), np.zeros(2)
+    sum_equations(
+        surface,
+        points,
+        np.array(present),
+        params.match_noise_m,
+        radius_m,
+        information,
+        gradient,
+        quality,
+    )
+    if quality[0] < params.min_overlap:
+        return None
+    # Where the pair has no information, the measurement is the present pose.
+    damping = 1e-6 * float(np.trace(information)) + 1e-9
+    x, y, yaw = -np.linalg.solve(information + damping * np.eye(3), gradient)
+    if max(abs(x), abs(y), abs(yaw)) > radius_m:
+        return None
+    measured = Pose2(present.x + x, present.y + y, present.yaw + yaw)
+    return GraphEdge(i, j, measured, information, True)

@@ -1,0 +1,51 @@
+"""Conversion of scans from sensor_msgs/LaserScan."""
+
+import math
+
+import numpy as np
+
+from navette.errors import InvalidInputError
+from navette.geometry import Pose2, Transform3, yaw_of
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.grids import PlanarScan
+
+# Angle from the horizontal up to which a scanner counts as planar.
+_MOST_TILT_RAD = math.radians(15.0)
+
+
+def planar_scan(msg: LaserScan, base_T_sensor: Transform3) -> tuple[PlanarScan, Pose2]:
+    """Return a scan and the sensor's pose in the plane of the base.
+
+    The beams of a scanner that is mounted upside down are mirrored.
+
+    Raises:
+        InvalidInputError: ranges or angles out of range, or a scanner that is not
+            horizontal.
+    """
+    (x, y, _), rotation = base_T_sensor
+    upright = 1.0 - 2.0 * (rotation[0] ** 2 + rotation[1] ** 2)
+    if abs(upright) < math.cos(_MOST_TILT_RAD):
+        tilt = math.degrees(math.acos(max(-1.0, min(1.0, abs(upright)))))
+        raise InvalidInputError(
+            "not_planar",
+            f"frame {msg.header.frame_id!r} is tilted by {tilt:.0f} degrees; SLAM "
+            f"needs a scanner within {math.degrees(_MOST_TILT_RAD):.0f} degrees of the "
+            "horizontal",
+        )
+    side = math.copysign(1.0, upright)
+    least, most = float(msg.range_min), float(msg.range_max)
+    if not (math.isfinite(least) and 0.0 <= least < most):
+        raise InvalidInputError(
+            "out_of_range",
+            f"range_min {least}, range_max {most}; expected 0 <= range_min < range_max",
+        )
+    if not (math.isfinite(msg.angle_min) and math.isfinite(msg.angle_increment)):
+        raise InvalidInputError("out_of_range", "angle_min or angle_increment")
+    scan = PlanarScan(
+        np.array(msg.ranges, np.float32),
+        side * msg.angle_min,
+        side * msg.angle_increment,
+        least,
+        min(most, 1e6),
+    )
+    return scan, Pose2(x, y, yaw_of(rotation))

@@ -1,0 +1,214 @@
+"""The SLAM node: scans and odometry in, ``map → odom``, pose and map out.
+
+Before the first scan the node publishes nothing. A scan waits for the odometry at its
+stamp; without odometry the node predicts by constant velocity and publishes the pose
+only. When scans stop matching the map, the status is ``lost``: navigation stops, and the
+odometry continues the pose.
+"""
+
+from collections import deque
+from typing import Any, ClassVar
+
+import numpy as np
+
+from navette.errors import InvalidInputError
+from navette.geometry import Pose2, Transform3
+from navette.geometry.messages import header, transform_message
+from navette.msgs import topics
+from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.grids import grid_to_message
+from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.navigation.slam.messages import planar_scan
+from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.rendering import MapRenderer
+from navette.navigation.slam.slam import Slam, SlamEstimate
+from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import pose_message
+from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.tf.exceptions import TransformException
+
+_PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
+# Scans that wait for their odometry; more are older than any wait.
+_WAITING = 16
+# Of the period between two matched scans, so that jitter of the scanner skips none.
+_EARLY = 0.8
+# States on the topic of the localization's status; navigation stops unless localized.
+_WAITING_FOR_SCANS, _LOCALIZED, _LOST = "localizing", "localized", "lost"
+
+
+class SlamNode(StageNode):
+    """Build a map, localise in it and correct the odometry."""
+
+    PARAMS = SlamParams
+    INPUTS: ClassVar = (
+        Input.of(
+            topics.LIDAR, "laser scan", rate_hz=10.0, timeout_s=0.5, callback="on_scan"
+        ),
+        Input.of(
+            topics.ODOMETRY,
+            "pose in the odometry's frame",
+            rate_hz=10.0,
+            timeout_s=0.5,
+            callback="on_odometry",
+        ),
+    )
+    OUTPUTS: ClassVar = (
+        Output.of(topics.TF, "map → odom, after each scan", rate_hz=10.0),
+        Output.of(topics.SLAM_POSE, "pose with covariance at each scan", rate_hz=10.0),
+        Output.of(topics.AMCL_POSE, "the same under Nav2's name"),
+        status_output(topics.LOCALIZATION_STATUS.name),
+        Output.of(topics.SLAM_MAP, "map of the key scans, while it is subscribed to"),
+    )
+    FIXED_AT_START = frozenset(
+        {"map_frame", "odom_frame", "base_frame"}
+        | {"start_x_m", "start_y_m", "start_yaw_rad"}
+    )
+
+    params: SlamParams
+    _taken_ns: int
+
+    def __init__(self, node_name: str = "slam", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        # Programs of Nav2 wait for the node that locates the robot.
+        self._lifecycle = StageLifecycle(self, "amcl")
+        self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
+        self._start()
+        self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Store the pose; use the scans that waited for it."""
+        if self._tracker.update(msg):
+            self._use_waiting()
+
+    def on_scan(self, msg: LaserScan) -> None:
+        """Use the scan as soon as the odometry at its stamp is there."""
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        period_ns = round(_EARLY * 1e9 / self.params.rate_hz)
+        if stamp_ns < self._taken_ns + period_ns:
+            return
+        self._taken_ns = stamp_ns
+        self._waiting.append((stamp_ns, msg))
+        self._use_waiting()
+
+    def on_params_changed(self, old: SlamParams) -> None:
+        """Use the new values from the next scan on; the map is kept."""
+        self._slam.params = self.params
+        if self.params.map_period_s != old.map_period_s:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
+
+    def on_time_jump(self) -> None:
+        """Begin a new map."""
+        self._start()
+
+    def _start(self) -> None:
+        params = self.params
+        start = Pose2(params.start_x_m, params.start_y_m, params.start_yaw_rad)
+        self._slam = Slam(params, start)
+        self._renderer = MapRenderer(params)
+        self._tracker = PoseTracker(self, params.base_frame, params.odom_frame)
+        self._waiting: deque[tuple[int, LaserScan]] = deque(maxlen=_WAITING)
+        self._taken_ns = -(10**18)
+        self._newest_ns = 0
+        self._map_keys = 0
+        self._status.report(_WAITING_FOR_SCANS, StatusReporter.WARN)
+
+    def _use_waiting(self) -> None:
+        wait_ns = round(self.params.pose_wait_s * 1e9)
+        while self._waiting:
+            stamp_ns, msg = self._waiting[0]
+            pose = self._tracker.pose_at(stamp_ns)
+            known_ns = self._tracker.stamp_ns
+            is_coming = known_ns is None or known_ns < stamp_ns
+            if pose is None and is_coming and self._taken_ns < stamp_ns + wait_ns:
+                return
+            self._waiting.popleft()
+            try:
+                self._use(stamp_ns, msg, pose)
+            except InvalidInputError as error:
+                self.drop_input(topics.LIDAR.name, error)
+
+    def _use(self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None) -> None:
+        scan, base_T_sensor = planar_scan(msg, self._base_T_sensor(msg.header.frame_id))
+        estimate = self._slam.add(
+            stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor
+        )
+        self._newest_ns = stamp_ns
+        self._report(estimate)
+        self._publish_pose(stamp_ns, estimate)
+        if odom_T_base is not None:
+            self._publish_transform(
+                stamp_ns, estimate.map_T_base @ odom_T_base.inverse()
+            )
+
+    def _base_T_sensor(self, frame_id: str) -> Transform3:  # noqa: N802
+        base = self.params.base_frame
+        if frame_id in ("", base):
+            return Transform3.identity()
+        try:
+            return self._tracker.buffer.lookup(base, frame_id, 0)
+        except TransformException as error:
+            raise InvalidInputError("no_transform", str(error)) from None
+
+    def _report(self, estimate: SlamEstimate) -> None:
+        """Report whether the scans agree with the map; log when that changes."""
+        row, before = self._slam.unmatched_in_a_row, self._status.state
+        state = before
+        if row >= self.params.lost_scans:
+            state = _LOST
+        elif row == 0:
+            state = _LOCALIZED
+        if state == _LOST and before != _LOST:
+            self.get_logger().error(
+                f"lost: {row} scans in a row do not match the map; navigation stops. "
+                "Drive by hand to a place that is mapped"
+            )
+        elif state == _LOCALIZED and before == _LOST:
+            self.get_logger().info("localized again")
+        level = StatusReporter.OK if state == _LOCALIZED else StatusReporter.ERROR
+        spread = float(np.sqrt(np.trace(estimate.covariance[:2, :2])))
+        self._status.report(
+            state,
+            level,
+            position_stddev_m=spread,
+            key_scans=len(self._slam.graph),
+            loop_closures=self._slam.loop_closures,
+        )
+
+    def _publish_pose(self, stamp_ns: int, estimate: SlamEstimate) -> None:
+        message = PoseWithCovarianceStamped(
+            header=header(stamp_ns, self.params.map_frame)
+        )
+        message.pose.pose = pose_message(estimate.map_T_base)
+        covariance = np.zeros((6, 6))
+        covariance[_PLANAR] = estimate.covariance
+        message.pose.covariance = covariance.reshape(-1)
+        self.publish(topics.SLAM_POSE.name, message)
+        self.publish(topics.AMCL_POSE.name, message)
+
+    def _publish_transform(self, stamp_ns: int, map_T_odom: Pose2) -> None:
+        params = self.params
+        valid_ns = stamp_ns + round(params.transform_tolerance_s * 1e9)
+        stamped = transform_message(
+            valid_ns,
+            params.map_frame,
+            params.odom_frame,
+            Transform3.from_pose2(map_T_odom),
+        )
+        self.publish(topics.TF.name, TFMessage(transforms=[stamped]))
+
+    def _publish_map(self) -> None:
+        """Publish the map if it has grown and a program subscribes to it."""
+        keys = len(self._slam.graph)
+        if keys == self._map_keys or not self.has_listeners(topics.SLAM_MAP.name):
+            return
+        self._map_keys = keys
+        cells, spec = self._renderer.render(self._slam.placed_scans())
+        self.publish(
+            topics.SLAM_MAP.name,
+            grid_to_message(cells, spec, self.params.map_frame, self._newest_ns),
+        )

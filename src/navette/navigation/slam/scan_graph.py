@@ -1,0 +1,131 @@
+"""Key scans, the measurements between them and their poses."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.grids import PlanarScan
+from navette.navigation.slam.pose_graph import GraphEdge, optimise
+from navette.navigation.slam.relative_covariance import EdgeList, covariances_from
+from navette.navigation.slam.scan_points import Points, moved_points
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class KeyScan:
+    """A scan that is kept."""
+
+    stamp_ns: int
+    scan: PlanarScan
+    base_T_sensor: Pose2
+    points: Points
+    """(N, 4) in the base frame"""
+
+
+class ScanChunk(NamedTuple):
+    """Consecutive key scans, from ``first`` up to ``last`` (excluded)."""
+
+    first: int
+    last: int
+
+    @property
+    def anchor(self) -> int:
+        """The key scan in whose frame the chunk lies."""
+        return (self.first + self.last) // 2
+
+
+class ScanGraph:
+    """Pose graph of key scans.
+
+    Attributes:
+        keys: the key scans, by node.
+        edges: the measurements that the poses follow from.
+        motions: one edge from each node to an earlier one, without scan matching
+            where there was odometry; they keep the graph connected.
+        sessions: first node of each session; between two the robot was switched off.
+    """
+
+    def __init__(self) -> None:
+        self.keys: list[KeyScan] = []
+        self.edges: list[GraphEdge] = []
+        self.motions: list[GraphEdge] = []
+        self.sessions: list[int] = []
+        self._poses = np.empty((0, 3))
+        self._centers: list[NDArray[np.float64]] = []
+        self._table = EdgeList()
+
+    def __len__(self) -> int:
+        return len(self.keys)
+
+    @property
+    def poses(self) -> Matrix:
+        """(N, 3) x, y, yaw of each key scan in the map."""
+        return self._poses
+
+    @poses.setter
+    def poses(self, poses: Matrix) -> None:
+        self._poses = poses
+
+    def pose(self, node: int) -> Pose2:
+        """Return map_T_base of a key scan."""
+        x, y, yaw = self._poses[node]
+        return Pose2(float(x), float(y), float(yaw))
+
+    def insert(self, key: KeyScan, pose: Pose2, *, starts_session: bool) -> int:
+        """Add a key scan and return its node; the caller adds its edges."""
+        node = len(self.keys)
+        if starts_session:
+            self.sessions.append(node)
+        self.keys.append(key)
+        self._poses = np.vstack([self._poses, np.array(pose)])
+        # Where a scan looks: half-way to the middle of its points.
+        points = key.points[:, :2]
+        self._centers.append(0.5 * points.mean(axis=0) if len(points) else np.zeros(2))
+        return node
+
+    def connect(self, edges: Iterable[GraphEdge]) -> None:
+        """Add measurements; the poses do not change."""
+        for edge in edges:
+            self.edges.append(edge)
+            self._table.add(edge)
+
+    def optimise(self, steps: int = 10) -> None:
+        """Compute the poses from the edges."""
+        if len(self.keys) > 1:
+            self._poses = optimise(self._poses, self.edges, steps=steps).poses
+
+    def covariances_from(self, node: int) -> Matrix:
+        """Return (N, 3, 3) covariances of all poses relative to a node."""
+        return covariances_from(node, self._poses, self._table.table(len(self.keys)))
+
+    def view_centers(self) -> Matrix:
+        """Return (N, 2) the place in the map that each key scan looks at, m."""
+        local = np.array(self._centers).reshape(-1, 2)
+        c, s = np.cos(self._poses[:, 2]), np.sin(self._poses[:, 2])
+        x = self._poses[:, 0] + c * local[:, 0] - s * local[:, 1]
+        y = self._poses[:, 1] + s * local[:, 0] + c * local[:, 1]
+        return np.column_stack([x, y])
+
+    def points(self, nodes: Iterable[int], frame: Pose2 | None = None) -> Points:
+        """Return the points of key scans in the map, or in a frame given in the map."""
+        frame_T_map = None if frame is None else frame.inverse()
+        parts = [np.empty((0, 4))]
+        for node in nodes:
+            pose = self.pose(node)
+            placed = pose if frame_T_map is None else frame_T_map @ pose
+            parts.append(moved_points(self.keys[node].points, placed))
+        return np.concatenate(parts)
+
+    def chunks(self, size: int) -> list[ScanChunk]:
+        """Return all complete chunks of ``size`` key scans of one session."""
+        ends = [*self.sessions[1:], len(self.keys)]
+        return [
+            ScanChunk(first, first + size)
+            for start, end in zip(self.sessions, ends, strict=True)
+            for first in range(start, end - size + 1, size)
+        ]

@@ -1,0 +1,275 @@
+"""Simultaneous localisation and mapping with a planar scanner."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.grids import GridSpec, PlanarScan
+from navette.navigation.slam.global_refinement import refine_all
+from navette.navigation.slam.loop_closure import LoopFinder, softened
+from navette.navigation.slam.motion import (
+    HERE,
+    Matrix3,
+    MotionModel,
+    ScanMotion,
+    inverted,
+    moved_covariance,
+    rotation3,
+)
+from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.pose_graph import GraphEdge, mahalanobis
+from navette.navigation.slam.refinement import PosePrior, Refined
+from navette.navigation.slam.rendering import MapScan, render
+from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
+from navette.navigation.slam.scan_points import Points, scan_points
+from navette.navigation.slam.tracking import LocalMap, match
+
+# Uncertainty of the first pose, which is the map's origin.
+_START = np.diag([1e-6, 1e-6, 1e-6])
+# What the errors that the scans of a local map share add to a match.
+_FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
+# Overlap below which the odometry is doubted, and what another motion must gain.
+_DOUBTFUL, _GAIN = 0.6, 0.15
+# Standard deviation of a predicted motion beyond which it replaces no odometry, m.
+_SURE_M = 0.3
+# Squared Mahalanobis distance of a closure from the graph up to which it fits anyway.
+_CLOSE = 1.0
+
+
+class SlamEstimate(NamedTuple):
+    """Pose of the robot at the stamp of a scan.
+
+    Attributes:
+        map_T_base: the pose.
+        covariance: (3, 3) of x, y, m, and yaw, rad, relative to the map's origin.
+        is_matched: whether the scan agreed with the map; otherwise the pose is a
+            prediction.
+        is_corrected: whether earlier poses changed too, after a loop closure.
+    """
+
+    map_T_base: Pose2
+    covariance: Matrix3
+    is_matched: bool
+    is_corrected: bool
+
+
+class _Tracked(NamedTuple):
+    """A scan, relative to the key scan before it."""
+
+    stamp_ns: int
+    key: int
+    key_T_base: Pose2
+
+
+class Slam:
+    """Build a map from scans and localise in it.
+
+    The steps of each scan: predict the motion; match the scan with the newest key
+    scans; after enough motion, keep it as a key scan; search for places seen before;
+    optimise the pose graph where one is found.
+
+    Args:
+        params: noise, distances and limits.
+        start: map_T_base at the first scan.
+    """
+
+    def __init__(self, params: SlamParams, start: Pose2 = HERE) -> None:
+        self.params = params
+        self.graph = ScanGraph()
+        self._finder = LoopFinder(params)
+        self._motion = MotionModel(params)
+        self._track: list[_Tracked] = []
+        self._pose = start
+        # Of the pose, relative to the key scans around it, in the map's axes.
+        self._covariance: Matrix3 = _START
+        # Of the newest key scan, relative to the map's origin.
+        self._key_covariance: Matrix3 = np.zeros((3, 3))
+        # Since the newest key scan, without matching.
+        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
+        self.unmatched = 0
+        self.unmatched_in_a_row = 0
+
+    def add(
+        self,
+        stamp_ns: int,
+        scan: PlanarScan,
+        odom_T_base: Pose2 | None = None,
+        *,
+        base_T_sensor: Pose2 = HERE,
+        yaw: float | None = None,
+    ) -> SlamEstimate:
+        """Use a scan and return the pose at its stamp.
+
+        Args:
+            stamp_ns: later than that of the scan before.
+            scan: the scan.
+            odom_T_base: pose by odometry at the stamp; None: the velocity is constant.
+            base_T_sensor: pose of the sensor on the robot.
+            yaw: heading by an IMU at the stamp.
+        """
+        params = self.params
+        points = scan_points(
+            scan,
+            base_T_sensor,
+            max_range_m=params.max_range_m,
+            spacing_m=params.point_spacing_m,
+            max_points=params.max_points,
+        )
+        key = KeyScan(stamp_ns, scan, base_T_sensor, points)
+        motion = self._motion.step(stamp_ns, odom_T_base, yaw)
+        if not len(self.graph):
+            self._keep(key, None)
+            return self._estimate(stamp_ns, is_matched=True, is_corrected=False)
+        matched = self._locate(points, motion)
+        is_corrected = False
+        if self._is_far():
+            self._keep(key, matched)
+            is_corrected = self._close_loops()
+        return self._estimate(stamp_ns, matched is not None, is_corrected)
+
+    def refine(self) -> None:
+        """Optimise all poses jointly, at the end of a run or before a map is saved."""
+        self.graph.optimise()
+        refine_all(self.graph, self.params)
+        self._continue_from_graph()
+
+    @property
+    def loop_closures(self) -> int:
+        """Number of measurements between key scans that are not neighbours."""
+        return sum(each.is_robust for each in self.graph.edges)
+
+    def trajectory(self) -> list[tuple[int, Pose2]]:
+        """Return stamp (ns) and map_T_base of each scan, as far as known now."""
+        return [
+            (each.stamp_ns, self.graph.pose(each.key) @ each.key_T_base)
+            for each in self._track
+        ]
+
+    def occupancy(self) -> tuple[NDArray[np.int8], GridSpec]:
+        """Return the map (H, W): −1 unknown, 0 free, 100 lethal; and its geometry."""
+        return render(self.placed_scans(), self.params)
+
+    def placed_scans(self) -> list[MapScan]:
+        """Return the key scans at their poses in the map."""
+        return [
+            MapScan(key.scan, self.graph.pose(node) @ key.base_T_sensor)
+            for node, key in enumerate(self.graph.keys)
+        ]
+
+    def _locate(self, points: Points, motion: ScanMotion) -> Refined | None:
+        """Match a scan and move the pose; without a match, by the motion alone."""
+        before = self._pose
+        moved, matched = motion, self._matched(points, motion)
+        if matched is None or matched.overlap < _DOUBTFUL:
+            steady = self._motion.steady()
+            other = self._matched(points, steady) if _is_sure(steady) else None
+            gain = _DOUBTFUL if matched is None else matched.overlap + _GAIN
+            if other is not None and other.overlap > gain:
+                moved, matched = steady, other
+        covariance = moved_covariance(self._covariance, before, moved)
+        since = self._since_key
+        self._since_key = ScanMotion(
+            since.pose @ moved.pose,
+            moved_covariance(since.covariance, since.pose, moved),
+        )
+        if matched is None:
+            self.unmatched += 1
+            self.unmatched_in_a_row += 1
+            self._pose, self._covariance = before @ moved.pose, covariance
+        else:
+            self.unmatched_in_a_row = 0
+            self._pose = matched.pose
+            information = inverted(covariance) + matched.information
+            self._covariance = inverted(information)
+        self._motion.record(before.inverse() @ self._pose)
+        return matched
+
+    def _matched(self, points: Points, motion: ScanMotion) -> Refined | None:
+        covariance = moved_covariance(self._covariance, self._pose, motion)
+        prior = PosePrior(self._pose @ motion.pose, inverted(covariance))
+        return match(self._local, points, prior, self.params)
+
+    def _is_far(self) -> bool:
+        """Whether the robot moved enough since the newest key scan."""
+        moved = self.graph.pose(len(self.graph) - 1).inverse() @ self._pose
+        return (
+            math.hypot(moved.x, moved.y) > self.params.key_distance_m
+            or abs(moved.yaw) > self.params.key_angle_rad
+        )
+
+    def _keep(self, key: KeyScan, matched: Refined | None) -> None:
+        """Make a scan a key scan, connected to the one before."""
+        node = self.graph.insert(key, self._pose, starts_session=not len(self.graph))
+        if node:
+            self._connect(node, matched)
+        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
+        self._rebuild_local_map()
+
+    def _connect(self, node: int, matched: Refined | None) -> None:
+        last = self.graph.pose(node - 1)
+        moved = last.inverse() @ self._pose
+        since = self._since_key
+        information = inverted(since.covariance)
+        self.graph.motions.append(GraphEdge(node - 1, node, since.pose, information))
+        if matched is not None:
+            turn = rotation3(last.yaw)
+            information = information + turn.T @ matched.information @ turn
+        edge = GraphEdge(node - 1, node, moved, softened(information, _FLOOR))
+        self.graph.connect([edge])
+        step = ScanMotion(moved, inverted(edge.information))
+        self._key_covariance = moved_covariance(self._key_covariance, last, step)
+
+    def _close_loops(self) -> bool:
+        """Search for places seen before; return whether poses changed."""
+        size, count = self.params.submap_scans, len(self.graph)
+        if count % max(1, size // 2) or count - self.graph.sessions[-1] < size:
+            return False
+        edges = self._finder.find(ScanChunk(count - size, count), self.graph)
+        if not edges:
+            return False
+        self.graph.connect(edges)
+        fits = all(mahalanobis(each, self.graph.poses) < _CLOSE for each in edges)
+        if not fits:
+            self.graph.optimise()
+            self._continue_from_graph()
+        self._key_covariance = self.graph.covariances_from(0)[-1]
+        return not fits
+
+    def _continue_from_graph(self) -> None:
+        """Place the robot relative to the newest key scan, after poses changed."""
+        if self._track:
+            last = self._track[-1]
+            node = len(self.graph) - 1
+            self._pose = self.graph.pose(node)
+            if last.key == node:
+                self._pose = self._pose @ last.key_T_base
+        self._rebuild_local_map()
+
+    def _rebuild_local_map(self) -> None:
+        count = len(self.graph)
+        nodes = range(max(0, count - self.params.local_scans), count)
+        points = self.graph.points(nodes)
+        if not len(points):  # nothing was in range: no scan will match
+            points = np.array([[self._pose.x, self._pose.y, 0.0, 0.0]])
+        self._local = LocalMap(points, self.params)
+
+    def _estimate(
+        self, stamp_ns: int, is_matched: bool, is_corrected: bool
+    ) -> SlamEstimate:
+        node = len(self.graph) - 1
+        key_T_base = self.graph.pose(node).inverse() @ self._pose
+        self._track.append(_Tracked(stamp_ns, node, key_T_base))
+        moved = ScanMotion(key_T_base, np.zeros((3, 3)))
+        covariance = moved_covariance(
+            self._key_covariance, self.graph.pose(node), moved
+        )
+        return SlamEstimate(
+            self._pose, covariance + self._covariance, is_matched, is_corrected
+        )
+
+
+def _is_sure(motion: ScanMotion) -> bool:
+    return bool(motion.covariance[0, 0] < _SURE_M**2)
