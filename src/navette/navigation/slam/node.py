@@ -2,8 +2,8 @@
 
 Before the first scan the node publishes nothing. A scan waits for the odometry at its
 stamp; without odometry the node predicts by constant velocity and publishes the pose
-only. When scans stop matching the map, the status is ``lost``: navigation stops, and the
-odometry continues the pose.
+only. When scans stop matching the map, the status is ``lost``: navigation stops, and
+the odometry continues the pose.
 """
 
 from collections import deque
