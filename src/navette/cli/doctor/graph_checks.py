@@ -43,6 +43,22 @@ def check_nodes(seen: Snapshot) -> Iterator[Diagnosis]:
         topics = seen.unreached_topics.get(name, ())
         how = "is listed by the router, but cannot be reached"
         yield _silent(name, how + consequence(seen, topics), topics)
+    yield from _missing_stages(seen)
+    if not seen.nodes:
+        yield Diagnosis(
+            Rating.NOTE,
+            NODES,
+            "nodes",
+            "none",
+            "start a program (navette demo) in a terminal with the same"
+            " ROS_DOMAIN_ID and NAVETTE_ROUTER as this one",
+        )
+        return
+    problems = [*_nodes_named_twice(seen), *_silent_nodes(seen)]
+    yield from problems or [_healthy_nodes(seen)]
+
+
+def _missing_stages(seen: Snapshot) -> Iterator[Diagnosis]:
     for link in missing_links(seen):
         yield Diagnosis(
             Rating.PROBLEM,
@@ -58,45 +74,35 @@ def check_nodes(seen: Snapshot) -> Iterator[Diagnosis]:
                 "makes": link.publishes.name,
             },
         )
-    if not seen.nodes:
-        yield Diagnosis(
-            Rating.NOTE,
-            NODES,
-            "nodes",
-            "none",
-            "start a program (navette demo) in a terminal with the same"
-            " ROS_DOMAIN_ID and NAVETTE_ROUTER as this one",
-        )
-        return
-    twice = sorted(name for name, times in Counter(seen.nodes).items() if times > 1)
-    for name in twice:
+
+
+def _nodes_named_twice(seen: Snapshot) -> Iterator[Diagnosis]:
+    counts = Counter(seen.nodes)
+    for name in sorted(name for name, times in counts.items() if times > 1):
         yield Diagnosis(
             Rating.PROBLEM,
             NODES,
             name,
-            f"{seen.nodes.count(name)} nodes have this name",
+            f"{counts[name]} nodes have this name",
             "a program was started twice (navette ps --all), or one needs another"
             " name: --ros-args -r __node:=NAME",
         )
-    silent = sorted(name for name, answer in seen.sim_time.items() if answer is None)
-    for name in silent:
+
+
+def _silent_nodes(seen: Snapshot) -> Iterator[Diagnosis]:
+    for name in sorted(name for name, time in seen.sim_time.items() if time is None):
         makes = seen.published_by(name)
-        how = "does not respond"
-        yield _silent(name, how + consequence(seen, makes), makes)
-    if not twice and not silent:
-        several = len(seen.nodes) > 1
-        text = plural(len(seen.nodes), "node")
-        text += " with unique names" if several else ""
-        text += (
-            f"; {'all respond' if several else 'it responds'}" if seen.sim_time else ""
-        )
-        yield Diagnosis(
-            Rating.GOOD,
-            NODES,
-            "nodes",
-            text,
-            data={"nodes": sorted(seen.nodes)},
-        )
+        yield _silent(name, "does not respond" + consequence(seen, makes), makes)
+
+
+def _healthy_nodes(seen: Snapshot) -> Diagnosis:
+    several = len(seen.nodes) > 1
+    text = plural(len(seen.nodes), "node")
+    text += " with unique names" if several else ""
+    text += f"; {'all respond' if several else 'it responds'}" if seen.sim_time else ""
+    return Diagnosis(
+        Rating.GOOD, NODES, "nodes", text, data={"nodes": sorted(seen.nodes)}
+    )
 
 
 def _silent(name: str, how: str, topics: Iterable[str]) -> Diagnosis:

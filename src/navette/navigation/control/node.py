@@ -17,16 +17,12 @@ from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Footprint
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
+from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
-from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
+from navette.msgs.nav2_msgs.msg import SpeedLimit
 from navette.msgs.nav_msgs.msg import Odometry, Path
 from navette.navigation.control.command_gate import InputAges
-from navette.navigation.control.explanations import (
-    EXPLAINED,
-    Situation,
-    explain,
-)
+from navette.navigation.control.explanations import Situation
 from navette.navigation.control.followers import make_follower
 from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap
 from navette.navigation.control.params import ControlParams
@@ -40,7 +36,8 @@ from navette.navigation.control.servers.follow_path import (
     FollowContext,
     FollowPathServer,
 )
-from navette.navigation.control.states import ControlState, LimitedBy
+from navette.navigation.control.servers.reports import ControlReports
+from navette.navigation.control.states import ControlState
 from navette.navigation.grids import (
     NO_DISCS,
     MovingDiscs,
@@ -55,14 +52,9 @@ from navette.params.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output
-from navette.runtime.stage.status import StatusReporter, status_output
-from navette.runtime.time import ns_to_stamp
+from navette.runtime.stage.status import status_output
 
 _NEVER = -(1 << 62)
-# A stop that ends by itself, as before the first costmap, needs no explanation.
-_EXPLAIN_AFTER_NS = 1_000_000_000
-_EXPLAIN_PERIOD_NS = 60_000_000_000
-_TICKS_PER_REPORT = 5
 # Age of the moving obstacles from which they are obsolete, and what is added to their
 # radius to take their returns out of the static obstacles.
 _MOVING_TIMEOUT_S = 0.5
@@ -135,23 +127,18 @@ class ControlNode(MotionNode):
         self._follows_goal = False  # the path is that of a follow_path goal …
         self._method = ""  # … which may name a steering method
         self._fault = ""  # newest of the user's method
-        self._collision_action = CollisionMonitorState.DO_NOTHING
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
         self._planner_ns = _NEVER
         self._odometry_frame = ""
-        self._explained_ns: dict[ControlState, int] = {}
-        self._stopped_in, self._stopped_ns = ControlState.IDLE, _NEVER
         self._planner_state = ""
         self._is_paused = False
         self._stall = StallMonitor(params.stall_time_s)
         self._commanded = STOP
         self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
-        self._ticks_to_report = 0
-        self._reported = (ControlState.IDLE, LimitedBy.NONE)
-        self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
+        self._reports = ControlReports(self, self._situation)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
         context = FollowContext(
             params=lambda: self.params,
@@ -324,11 +311,11 @@ class ControlNode(MotionNode):
     def _tick(self) -> None:
         """Locate the robot, place the costmap, step the follower, publish."""
         self._locate()
-        self._publish_footprint()
+        self._reports.publish_footprint(self._tracker.predicted_now(self._now_ns))
         self._place_costmap()
         self._follower.set_moving(self._moving.at(self._now_ns, _MOVING_TIMEOUT_S))
         if self._is_paused and self._follower.has_path:
-            self._report(PAUSED)
+            self._reports.state(PAUSED)
             self._follow_server.step_paused()
             return
         speed, turn_rate = self._tracker.velocity
@@ -338,8 +325,8 @@ class ControlNode(MotionNode):
         )
         output = self._stopped_if_stalled(inputs, self._step(inputs))
         self._send(output)
-        self._report(output)
-        self._report_collision(output)
+        self._reports.state(output)
+        self._reports.collision(output)
         fresh = inputs.ages.odometry_s <= inputs.ages.odometry_timeout_s
         self._follow_server.step(output, inputs, fresh=fresh)
 
@@ -445,100 +432,14 @@ class ControlNode(MotionNode):
         twist.linear.x, twist.angular.z, twist.linear.y = output.command
         self.publish(topics.CMD_VEL_NAV.name, twist)
 
-    def _report(self, output: FollowerOutput) -> None:
-        """Publish the state at once when it changes, and every few steps."""
-        self._ticks_to_report -= 1
-        shown = (output.state, output.limited_by)
-        if self._ticks_to_report > 0 and shown == self._reported:
-            return
-        self._reported = shown
-        self._ticks_to_report = _TICKS_PER_REPORT
-        self._explain(output.state)
-        self._status.report(
-            str(output.state),
-            _level(output.state),
-            cause=output.limited_by,
-            speed_mps=output.command.speed,
-            turn_rate_radps=output.command.turn_rate,
-            cross_track_m=output.cross_track_m,
-            heading_error_rad=output.heading_error_rad,
-            distance_left_m=output.distance_left_m,
-            clearance_m=output.clearance_m,
-            limited_by=str(output.limited_by),
-        )
-
-    def _explain(self, state: ControlState) -> None:
-        """Log why the robot stays stopped, once a minute for each state."""
-        if state != self._stopped_in:
-            self._stopped_in, self._stopped_ns = state, self._now_ns
-        last_ns = self._explained_ns.get(state, _NEVER)
-        lasts = self._now_ns - self._stopped_ns >= _EXPLAIN_AFTER_NS
-        is_new = not 0 <= self._now_ns - last_ns < _EXPLAIN_PERIOD_NS
-        if state not in EXPLAINED or not (lasts and is_new):
-            return
+    def _situation(self) -> Situation:
+        """Return what an explanation of a stop requires."""
         frame = self._odometry_frame
-        base_T_odometry = self._tracker.transform_to_base(frame) if frame else None
-        situation = Situation(
+        return Situation(
             pose=self._tracker.latest,
             path=self._path,
             odometry_frame=frame,
-            base_T_odometry=base_T_odometry,
+            base_T_odometry=self._tracker.transform_to_base(frame) if frame else None,
             ages=self._ages(),
             odometry_arrived=self._odometry_ns != _NEVER,
         )
-        text = explain(state, situation, self.params)
-        if text:
-            self._explained_ns[state] = self._now_ns
-            self.get_logger().warning(f"{state}: {text}")
-
-    def _publish_footprint(self) -> None:
-        if not self.has_listeners(topics.LOCAL_FOOTPRINT.name):
-            return
-        pose = self._tracker.predicted_now(self._now_ns)
-        if pose is None:
-            return
-        corners = np.array(self.params.footprint_m).reshape(-1, 2)
-        message = PolygonStamped()
-        message.header.frame_id = self.params.map_frame
-        message.header.stamp = ns_to_stamp(self._now_ns)
-        message.polygon.points = [
-            Point32(x=x, y=y) for x, y in pose.apply(corners).tolist()
-        ]
-        self.publish(topics.LOCAL_FOOTPRINT.name, message)
-
-    def _report_collision(self, output: FollowerOutput) -> None:
-        """Publish what the collision check does to the command when it changes."""
-        action = _collision_action(output)
-        if action == self._collision_action:
-            return
-        self._collision_action = action
-        name = "footprint" if action != CollisionMonitorState.DO_NOTHING else ""
-        self.publish(
-            topics.COLLISION_MONITOR_STATE.name,
-            CollisionMonitorState(action_type=action, polygon_name=name),
-        )
-
-
-def _collision_action(output: FollowerOutput) -> int:
-    if output.state is ControlState.BLOCKED:
-        return CollisionMonitorState.STOP
-    if output.collision_scale < 1.0:
-        return CollisionMonitorState.APPROACH
-    if output.limited_by is LimitedBy.CLEARANCE:
-        return CollisionMonitorState.SLOWDOWN
-    return CollisionMonitorState.DO_NOTHING
-
-
-_NORMAL = (ControlState.IDLE, ControlState.PAUSED, ControlState.REACHED)
-
-
-def _level(state: ControlState) -> bytes:
-    if state.moves or state in _NORMAL:
-        return StatusReporter.OK
-    warnings = (
-        ControlState.BLOCKED,
-        ControlState.STALLED,
-        ControlState.OFF_PATH,
-        ControlState.MISSED_GOAL,
-    )
-    return StatusReporter.WARN if state in warnings else StatusReporter.ERROR

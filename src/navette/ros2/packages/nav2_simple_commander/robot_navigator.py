@@ -96,7 +96,17 @@ class BasicNavigator(Node):
         self.result_future: Any = None
         self.feedback: Any = None
         self.status: int | None = None
+        self._create_action_clients()
+        self._create_service_clients()
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.localization_pose_sub = self.create_subscription(
+            PoseWithCovarianceStamped, "amcl_pose", self._amclPoseCallback, latched
+        )
+        self.initial_pose_pub = self.create_publisher(
+            PoseWithCovarianceStamped, "initialpose", 10
+        )
 
+    def _create_action_clients(self) -> None:
         def action(kind: Any, name: str) -> ActionClient:
             return ActionClient(self, kind, name)
 
@@ -122,13 +132,8 @@ class BasicNavigator(Node):
         self.assisted_teleop_client = action(AssistedTeleop, "assisted_teleop")
         self.docking_client = action(DockRobot, "dock_robot")
         self.undocking_client = action(UndockRobot, "undock_robot")
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.localization_pose_sub = self.create_subscription(
-            PoseWithCovarianceStamped, "amcl_pose", self._amclPoseCallback, latched
-        )
-        self.initial_pose_pub = self.create_publisher(
-            PoseWithCovarianceStamped, "initialpose", 10
-        )
+
+    def _create_service_clients(self) -> None:
         local, overall = "local_costmap", "global_costmap"
         self.change_maps_srv = self.create_client(LoadMap, "map_server/load_map")
         self.clear_costmap_global_srv = self.create_client(
