@@ -134,6 +134,8 @@ def _measure(
         sim_s=summary.sim_time_s,
         reach_m=trial.reach_m,
         variant=trial.variant,
+        pose_error_m=summary.pose_error_m.final,
+        worst_pose_error_m=summary.pose_error_m.worst,
     )
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
@@ -40,6 +40,8 @@ class Summary:
         time_s, path_ratio: over the trials that succeeded; the ratio is the driven
             path to the shortest.
         outcomes: outcome → number of trials.
+        pose_error_m: largest error of the estimated position at the end of a trial.
+        worst_pose_error_m: largest one of any time, while localized.
         lost_s: cause → mean seconds lost per trial.
         cpu_share: node → CPU seconds per simulated second.
         real_time_factor: simulated seconds per second, of one trial at a time.
@@ -59,6 +61,8 @@ class Summary:
     lost_s: dict[str, float]
     cpu_share: dict[str, float]
     real_time_factor: float
+    pose_error_m: float = math.nan
+    worst_pose_error_m: float = math.nan
 
 
 def summarize(results: Sequence[TrialResult]) -> Summary:
@@ -94,7 +98,13 @@ def summarize(results: Sequence[TrialResult]) -> Summary:
         lost_s=dict(sorted(lost.items(), key=lambda item: -item[1])),
         cpu_share=dict(sorted(cpu.items(), key=lambda item: -item[1])),
         real_time_factor=sim_s / sum(each.wall_s for each in results),
+        pose_error_m=_largest(each.pose_error_m for each in results),
+        worst_pose_error_m=_largest(each.worst_pose_error_m for each in results),
     )
+
+
+def _largest(values: Iterable[float | None]) -> float:
+    return max((value for value in values if value is not None), default=math.nan)
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:

@@ -24,6 +24,8 @@ def summary_text(summary: Summary, name: str) -> str:
         "time": f"{_known(summary.time_s, 2)} s",
         "path / shortest": _known(summary.path_ratio, 2),
         "minimum clearance": f"{_known(summary.min_clearance_m, 3)} m",
+        "pose error": f"{_known(summary.pose_error_m, 3)} m at the end, worst "
+        f"{_known(summary.worst_pose_error_m, 3)} m",
         "jerk": f"{_known(summary.jerk, 2)} m/s³",
         "outcomes": ", ".join(f"{k} {v}" for k, v in summary.outcomes.items()),
         "lost seconds": ", ".join(f"{k} {v:.2f}" for k, v in summary.lost_s.items()),

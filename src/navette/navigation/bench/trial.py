@@ -64,6 +64,8 @@ class TrialResult:
         score: BARN's score, 0 … 0.5.
         path_m: length of the driven path.
         min_clearance_m: least distance of the body to an obstacle.
+        pose_error_m: distance of the estimated from the true position at the end.
+        worst_pose_error_m: largest such distance while the robot was localized.
         lost_s: cause → seconds lost against driving at cruise speed.
         jerk: root mean square change of the acceleration (m/s³); lower is smoother.
         track: every tenth of a second x, y (m, map), for the pictures.
@@ -91,6 +93,8 @@ class TrialResult:
     sim_s: float = math.nan
     reach_m: float = 0.0
     variant: str = ""
+    pose_error_m: float | None = None
+    worst_pose_error_m: float | None = None
 
     @property
     def path_ratio(self) -> float:
