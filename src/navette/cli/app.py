@@ -116,6 +116,21 @@ Map = Annotated[
         " Default: the world is unknown.",
     ),
 ]
+Keepout = Annotated[
+    Path | None,
+    Option(
+        metavar="FILE.yaml",
+        help="Keep out of the occupied cells of this mask, in ROS's map format.",
+    ),
+]
+SpeedZones = Annotated[
+    Path | None,
+    Option(
+        metavar="FILE.yaml",
+        help="Slow down in the dark cells of this mask, in ROS's map format (mode:"
+        " scale): black means 1 %, white full speed.",
+    ),
+]
 MaxTime = Annotated[
     float | None, Option(metavar="S", help="Stop after this simulated time.")
 ]
@@ -252,6 +267,8 @@ def sim(
     methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
     known_map: Map = None,
+    keepout: Keepout = None,
+    speed_zones: SpeedZones = None,
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
@@ -285,6 +302,8 @@ def sim(
         parameters=methods.parameters,
         tree=tree,
         known_map=known_map,
+        keepout=keepout,
+        speed_zones=speed_zones,
         max_time_s=max_time,
         port=port,
         host=host,

@@ -71,6 +71,15 @@ TRACKED_MARKERS = StackTopic(
 PATH = StackTopic("/path", "nav_msgs/msg/Path")
 PLAN = StackTopic("/plan", "nav_msgs/msg/Path")
 SPEED_LIMIT = StackTopic("/speed_limit", "nav2_msgs/msg/SpeedLimit")
+KEEPOUT_INFO = StackTopic(
+    "/keepout_costmap_filter_info", "nav2_msgs/msg/CostmapFilterInfo", 1, True
+)
+KEEPOUT_MASK = StackTopic("/keepout_filter_mask", "nav_msgs/msg/OccupancyGrid", 1, True)
+SPEED_INFO = StackTopic(
+    "/speed_costmap_filter_info", "nav2_msgs/msg/CostmapFilterInfo", 1, True
+)
+SPEED_MASK = StackTopic("/speed_filter_mask", "nav_msgs/msg/OccupancyGrid", 1, True)
+KEEPOUT_ZONES = StackTopic("/keepout_zones", "nav_msgs/msg/OccupancyGrid", 1, True)
 COLLISION_MONITOR_STATE = StackTopic(
     "/collision_monitor_state", "nav2_msgs/msg/CollisionMonitorState", 1
 )

@@ -72,6 +72,7 @@ class ObstacleTracker:
 
     def __init__(self, poses: RobotPoses, footprint: Footprint, hand_m: float) -> None:
         self._poses = poses
+        self._zones: tuple[NDArray[np.int8], GridSpec] | None = None
         self.configure(footprint, hand_m)
         self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
         self.reset()
@@ -114,6 +115,10 @@ class ObstacleTracker:
         """
         self._costmap = self._costmap or self._placed
         self._seen = None
+
+    def keep_out(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
+        """Use zones (H, W), map frame, 100 = keep out, as obstacles in any case."""
+        self._zones = cells, spec
 
     def receive_points(self, msg: PointCloud2) -> None:
         """Use the points for the costmap with the same stamp.
@@ -174,6 +179,9 @@ class ObstacleTracker:
             else:
                 known = self._points_of(known, radius)
             points = np.concatenate([points, known])
+        if self._zones is not None:
+            forbidden = nearby(*self._zones, Pose2(0.0, 0.0, 0.0))
+            points = np.concatenate([points, forbidden])
         self.placed_ns = self._costmap_ns
         return Obstacles(points, radius, self._unseen(here, around, unseen_reach_m))
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.outcome import Outcome
@@ -61,6 +62,7 @@ class Navigator:
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._hits = NO_HITS
         self._avoided = AvoidedPlaces()
+        self._zones: KeepOutZones | None = None
         self._has_map = False
         self._map_changed = False
         self._goal: Goal | None = None
@@ -107,8 +109,15 @@ class Navigator:
         if self._map is not None:
             occupancy, spec = self._map
             marked = self._avoided.marked(occupancy, spec)
+            if self._zones is not None:
+                marked = self._zones.marked(marked, spec)
             self.planner.set_map(marked, spec, self._hits, changed)
             self._has_map = self._map_changed = True
+
+    def keep_out(self, zones: KeepOutZones) -> None:
+        """Plan around zones; the next step checks the path against them."""
+        self._zones = zones
+        self._apply_map()
 
     def avoid_place(self) -> bool:
         """Plan around the place where the robot got stuck; False if there is none."""

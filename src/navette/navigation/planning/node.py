@@ -40,6 +40,7 @@ from navette.navigation.grids import (
     grid_from_message,
 )
 from navette.navigation.grids.checks import check_frame
+from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
@@ -101,6 +102,11 @@ class PlannerNode(StageNode):
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
+        ),
+        Input.of(
+            topics.KEEPOUT_ZONES,
+            "zones that the robot must not touch",
+            callback="on_keepout_zones",
         ),
         Input.of(
             topics.LOCALIZATION_STATUS,
@@ -166,6 +172,7 @@ class PlannerNode(StageNode):
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
         self._is_lost = False
+        self._zones: KeepOutZones | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._map_ns = 0
@@ -222,6 +229,17 @@ class PlannerNode(StageNode):
             raise InvalidInputError("out_of_range", str(error)) from None
         self._map, self._map_ns = (occupancy, spec), stamp_to_ns(msg.header.stamp)
         self._apply_map()
+
+    def on_keepout_zones(self, msg: OccupancyGrid) -> None:
+        """Plan around zones; a path through them is replaced at once."""
+        check_frame("keep-out zones", msg.header.frame_id, self.params.map_frame)
+        try:
+            self._zones = KeepOutZones(*grid_from_message(msg))
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
+        zones = self._zones
+        self._when_stepped(lambda: self._navigator.keep_out(zones))
+        self.on_timer()
 
     def on_map_points(self, msg: PointCloud2) -> None:
         """Store where beams ended; usually it arrives before the map of its stamp."""
@@ -422,6 +440,8 @@ class PlannerNode(StageNode):
             self._navigator.pause(self._now_ns)
         if self._map is not None:
             self._navigator.set_map(*self._map, self._newest_hits())
+        if self._zones is not None:
+            self._navigator.keep_out(self._zones)
         if had_path:
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, empty)

@@ -8,7 +8,11 @@ from navette.geometry import Footprint
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
-from navette.navigation.grids import Obstacles, ObstacleTracker
+from navette.navigation.grids import (
+    Obstacles,
+    ObstacleTracker,
+    grid_from_message,
+)
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.shared_params import MotionParams
 from navette.runtime.stage.input_period import InputPeriod
@@ -52,6 +56,11 @@ class MotionNode(StageNode):
             "obstacles that the costmap does not show, such as behind the robot",
             callback="on_map",
         ),
+        Input.of(
+            topics.KEEPOUT_ZONES,
+            "zones that the robot must not touch",
+            callback="on_keepout_zones",
+        ),
     )
 
     params: MotionParams
@@ -78,6 +87,14 @@ class MotionNode(StageNode):
         """Store the map for what the costmap does not show."""
         check_frame("map", msg.header.frame_id, self.params.map_frame)
         self._obstacles.remember(msg)
+
+    def on_keepout_zones(self, msg: OccupancyGrid) -> None:
+        """Keep clear of zones as of obstacles."""
+        check_frame("keep-out zones", msg.header.frame_id, self.params.map_frame)
+        try:
+            self._obstacles.keep_out(*grid_from_message(msg))
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
 
     @property
     def _now_ns(self) -> int:

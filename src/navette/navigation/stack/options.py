@@ -36,6 +36,8 @@ class RunOptions:
     overwrite: bool = False
     tree: Path | None = None
     known_map: Path | None = None
+    keepout: Path | None = None
+    speed_zones: Path | None = None
     params_files: tuple[Path, ...] = field(default=())
     methods: Mapping[str, str] = field(default_factory=dict)
     replacements: Mapping[str, str] = field(default_factory=dict)

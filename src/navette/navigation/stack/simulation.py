@@ -8,6 +8,7 @@ from typing import Any
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
 from navette.msgs.topics import CLOCK
+from navette.navigation.mapping.zones.node import ZonesNode
 from navette.navigation.stack.localization import localization_nodes
 from navette.navigation.stack.localization_params import localization_parameters
 from navette.navigation.stack.methods import method_parameters
@@ -37,6 +38,15 @@ from navette.viewer.params import ViewerParams
 
 HALT_NS = 1_000_000_000
 """Simulated time for the robot to brake after a node raised."""
+
+
+# Options that name a file → node, its parameter, and the option of the command line.
+_FILES = {
+    "tree": ("missions", "default_nav_to_pose_bt_xml", "--tree"),
+    "known_map": ("map_memory", "map_file", "--map"),
+    "keepout": ("zones", "keepout_file", "--keepout"),
+    "speed_zones": ("zones", "speed_file", "--speed-zones"),
+}
 
 
 class Simulation:
@@ -111,12 +121,10 @@ class Simulation:
         overrides.add("sim", {"seed": self.options.seed}, "--seed")
         if goals:
             overrides.add("missions", {"goals_m": goals}, "--goal")
-        if self.options.tree is not None:
-            tree = {"default_nav_to_pose_bt_xml": str(self.options.tree)}
-            overrides.add("missions", tree, "--tree")
-        if self.options.known_map is not None:
-            known = {"map_file": str(self.options.known_map)}
-            overrides.add("map_memory", known, "--map")
+        for field, (node, parameter, option) in _FILES.items():
+            file = getattr(self.options, field)
+            if file is not None:
+                overrides.add(node, {parameter: str(file)}, option)
         if self.options.record is not None:
             images = {"images": self.options.record_images}
             overrides.add("recorder", images, "--record-images")
@@ -149,6 +157,8 @@ class Simulation:
         self._add_localization()
         located_by = [name for name, _ in localization_nodes(self.sim.params)]
         self.stack = NavigationStack.create(context, self._replacements, located_by)
+        if options.keepout is not None or options.speed_zones is not None:
+            ZonesNode(context=context)
         self.viewer = (
             None
             if options.headless

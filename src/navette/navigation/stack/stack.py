@@ -12,6 +12,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.navigation.mapping.node import MapMemoryNode
+from navette.navigation.mapping.zones.node import ZonesNode
 from navette.navigation.missions.explore.node import ExplorerNode
 from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
@@ -45,6 +46,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("costmap", CostmapNode),
     ("tracking", TrackingNode),
     ("map_memory", MapMemoryNode),
+    ("zones", ZonesNode),
     ("planner", PlannerNode),
     ("control", ControlNode),
     ("behaviors", BehaviorNode),

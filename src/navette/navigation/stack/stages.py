@@ -145,6 +145,14 @@ def map_memory() -> None:
 
 
 @_program
+def zones() -> None:
+    """Run the keep-out and speed zones."""
+    from navette.navigation.mapping.zones.node import ZonesNode
+
+    _run_stage("zones", ZonesNode, "filter masks → /keepout_zones, /speed_limit")
+
+
+@_program
 def planner() -> None:
     """Run the planner."""
     from navette.navigation.planning.node import PlannerNode

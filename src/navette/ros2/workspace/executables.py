@@ -23,6 +23,7 @@ _STAGES = (
     "costmap",
     "map_memory",
     "tracking",
+    "zones",
     "planner",
     "control",
     "behaviors",

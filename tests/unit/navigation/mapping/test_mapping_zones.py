@@ -1,0 +1,109 @@
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from navette.geometry import Pose2
+from navette.geometry.map_files import OccupancyMap, write_occupancy_map
+from navette.msgs.nav2_msgs.msg import CostmapFilterInfo, SpeedLimit
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.navigation.grids import GridSpec, grid_from_message
+from navette.navigation.grids.zones import KeepOutZones
+from navette.navigation.mapping.zones import FilterMask
+from navette.navigation.mapping.zones.node import ZonesNode
+from navette.runtime import DurabilityPolicy, Parameter, QoSProfile
+from navette.testing import GraphHarness
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@pytest.fixture
+def graph() -> Iterator[GraphHarness]:
+    with GraphHarness() as harness:
+        yield harness
+
+
+def mask_file(folder: Path, cells: np.ndarray, mode: str = "trinary") -> str:
+    """Write a mask of 1 m cells whose corner is at (-5, -5)."""
+    known = OccupancyMap(cells.astype(np.int8), 1.0, Pose2(-5.0, -5.0, 0.0))
+    image = "png" if mode == "scale" else "pgm"
+    written = write_occupancy_map(folder / "mask", known, mode=mode, image_format=image)
+    return str(written)
+
+
+def odometry(x: float, second: int) -> Odometry:
+    message = Odometry(child_frame_id="base_link")
+    message.header.frame_id = "map"
+    message.header.stamp.sec = second
+    message.pose.pose.position.x = x
+    return message
+
+
+def test_values_of_a_mask_are_scaled() -> None:
+    cells = np.array([[0, 70, -1]], np.int8)
+    mask = FilterMask(cells, GridSpec(1.0, 3, 1), 100.0, -1.0)
+    assert mask.value_at(0.5, 0.5) == 100.0
+    assert mask.value_at(1.5, 0.5) == 30.0
+    assert mask.value_at(2.5, 0.5) is None
+    assert mask.value_at(9.0, 0.5) is None
+    keep = FilterMask(np.array([[0, 99, -1, 50]], np.int8), GridSpec(1.0, 4, 1))
+    assert keep.keep_out(99).tolist() == [[0, 100, 0, 0]]
+    assert keep.keep_out(50).tolist() == [[0, 100, 0, 100]]
+
+
+def test_zones_lie_on_other_grids() -> None:
+    """A turned mask of coarse cells on a map of fine ones."""
+    spec = GridSpec(1.0, 2, 1, Pose2(1.0, 0.0, math.pi / 2))
+    zones = KeepOutZones(np.array([[0, 100]], np.int8), spec)
+    fine = GridSpec(0.5, 6, 6, Pose2(-0.5, 0.0, 0.0))
+    marked = zones.marked(np.zeros(fine.shape, np.int8), fine)
+    rows, columns = np.nonzero(marked)
+    # The zone covers x from 0 to 1 and y from 1 to 2.
+    assert sorted(set(rows.tolist())) == [2, 3]
+    assert sorted(set(columns.tolist())) == [1, 2]
+
+
+def test_files_become_filters_and_limits(graph: GraphHarness, tmp_path: Path) -> None:
+    cells = np.zeros((10, 10))
+    cells[:, 5:] = 60
+    parameters = [Parameter("speed_file", value=mask_file(tmp_path, cells, "scale"))]
+    graph.add(ZonesNode(context=graph.context, parameter_overrides=parameters))
+    limits: list[SpeedLimit] = []
+    infos: list[CostmapFilterInfo] = []
+    graph.node.create_subscription(SpeedLimit, "/speed_limit", limits.append, 10)
+    graph.node.create_subscription(
+        CostmapFilterInfo, "/speed_costmap_filter_info", infos.append, LATCHED
+    )
+    publisher = graph.node.create_publisher(Odometry, "/odom/filtered", 10)
+    for second, x in enumerate((-2.0, 2.0, 2.5, -2.0), 1):
+        graph.run_for(0.1)
+        publisher.publish(odometry(x, second))
+    graph.run_for(0.1)
+    assert [each.speed_limit for each in limits] == pytest.approx([40.0, 0.0], abs=0.5)
+    assert all(each.percentage for each in limits)
+    assert infos[0].filter_mask_topic == "/speed_filter_mask"
+    assert (infos[0].type, infos[0].base, infos[0].multiplier) == (1, 100.0, -1.0)
+
+
+def test_masks_of_other_nodes_are_used(graph: GraphHarness, tmp_path: Path) -> None:
+    graph.add(ZonesNode(context=graph.context))
+    zones: list[OccupancyGrid] = []
+    graph.node.create_subscription(
+        OccupancyGrid, "/keepout_zones", zones.append, LATCHED
+    )
+    mask = graph.node.create_publisher(OccupancyGrid, "/my_mask", LATCHED)
+    info = graph.node.create_publisher(
+        CostmapFilterInfo, "/keepout_costmap_filter_info", LATCHED
+    )
+    grid = OccupancyGrid()
+    grid.header.frame_id = "map"
+    grid.info.resolution, grid.info.width, grid.info.height = 1.0, 2, 1
+    grid.data = np.array([100, 0], np.int8)
+    mask.publish(grid)
+    info.publish(
+        CostmapFilterInfo(type=0, filter_mask_topic="/my_mask", multiplier=1.0)
+    )
+    graph.run_for(0.2)
+    assert grid_from_message(zones[-1])[0].tolist() == [[100, 0]]
