@@ -88,7 +88,7 @@ DIMENSIONLESS = (
     r"odometry_noise|(loop_)?min_(overlap|score)",  # shares
     # Names of Nav2's AMCL, in metres, radians and seconds; and shares.
     r"transform_tolerance|alpha[1-5]|update_min_[da]|laser_\w+|sigma_hit|z_\w+",
-    r"independent_beams|pf_\w+|recovery_alpha_\w+|(lost|localized)_match",
+    r"speed_base|speed_multiplier|independent_beams|pf_\w+|recovery_alpha_\w+|(lost|localized)_match",
 )
 
 
