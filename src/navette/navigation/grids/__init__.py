@@ -62,7 +62,6 @@ from navette.navigation.grids.sub_cells import (
     marked_points,
     point_radius,
     points_by_cell,
-    points_of,
 )
 from navette.navigation.grids.unseen import (
     Layer,
@@ -132,7 +131,6 @@ __all__ = [
     "mark_points",
     "marked_points",
     "cell_points",
-    "points_of",
     "points_by_cell",
     "point_radius",
     "grid_to_message",

@@ -43,35 +43,42 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
     Raises:
         InvalidValueError: no x and y of type float32, or data of another size.
     """
+    x, y = _checked_offsets(msg)
+    rows = np.asarray(msg.data, np.uint8).reshape(-1, msg.point_step)
+    points = np.empty((len(rows), 2))
+    points[:, 0] = np.ascontiguousarray(rows[:, x : x + _FIELD_BYTES]).view("<f4")[:, 0]
+    points[:, 1] = np.ascontiguousarray(rows[:, y : y + _FIELD_BYTES]).view("<f4")[:, 0]
+    finite = np.isfinite(points)
+    if not finite.all():
+        points = points[finite.all(axis=1)]
+    return points
+
+
+def _checked_offsets(msg: PointCloud2) -> tuple[int, int]:
+    """Return the offsets of x and y in a point, bytes."""
     offsets = {
         field.name: field.offset
         for field in msg.fields
         if field.datatype == PointField.FLOAT32
     }
     count, step = msg.width * msg.height, msg.point_step
-    data = np.asarray(msg.data, np.uint8)
-    ends = [offsets.get(name, step) + _FIELD_BYTES for name in "xy"]
-    if max(ends) > step or data.size != count * step or msg.is_bigendian:
+    size = len(msg.data)
+    x, y = (offsets.get(name, step) for name in "xy")
+    if max(x, y) + _FIELD_BYTES > step or size != count * step or msg.is_bigendian:
         raise InvalidValueError(
             f"point cloud of {msg.width} x {msg.height} points with fields "
-            f"{sorted(offsets)} in {data.size} bytes: expected float32 x and y, "
+            f"{sorted(offsets)} in {size} bytes: expected float32 x and y, "
             f"little-endian, in {step} bytes a point"
         )
-    rows = data.reshape(count, step)
-    columns = [
-        np.ascontiguousarray(rows[:, end - _FIELD_BYTES : end]).view("<f4")
-        for end in ends
-    ]
-    points = np.concatenate(columns, axis=1)
-    finite: NDArray[np.float64] = points[np.isfinite(points).all(axis=1)].astype(float)
-    return finite
+    return x, y
 
 
 class HitPoints:
     """The newest clouds by stamp, for the grids of the same stamps."""
 
     def __init__(self) -> None:
-        self._clouds: dict[int, NDArray[np.float64]] = {}
+        # Converted on first use: most are not used.
+        self._clouds: dict[int, PointCloud2 | NDArray[np.float64]] = {}
 
     def clear(self) -> None:
         """Drop all clouds."""
@@ -83,15 +90,19 @@ class HitPoints:
         Raises:
             InvalidValueError: it is invalid; see :func:`points_from_message`.
         """
+        _checked_offsets(msg)
         stamp = msg.header.stamp
         stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
-        points = points_from_message(msg)
         self._clouds.pop(stamp_ns, None)  # of an earlier run: now the newest
-        self._clouds[stamp_ns] = points
+        self._clouds[stamp_ns] = msg
         while len(self._clouds) > _KEPT:
             del self._clouds[next(iter(self._clouds))]
         return stamp_ns
 
     def at(self, stamp_ns: int) -> NDArray[np.float64] | None:
         """Return the points (N, 2) of the cloud with this stamp, if it arrived."""
-        return self._clouds.get(stamp_ns)
+        found = self._clouds.get(stamp_ns)
+        if found is None or isinstance(found, np.ndarray):
+            return found
+        points = self._clouds[stamp_ns] = points_from_message(found)
+        return points

@@ -18,9 +18,9 @@ from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.spec import UNKNOWN, GridSpec
 from navette.navigation.grids.sub_cells import (
-    Masks,
-    cell_points,
-    mark_points,
+    NO_POINTS,
+    cell_coordinates,
+    local_cell_points,
     point_radius,
 )
 from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
@@ -86,7 +86,8 @@ class ObstacleTracker:
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._seen: Layer | None = None  # what any map has shown
         self._map_ns = 0
-        self._map_masks: tuple[int, Masks] | None = None  # of the map with this stamp
+        # With the stamp of their map: u, v in cells of where its beams ended.
+        self._map_uv: tuple[int, NDArray[np.float64]] | None = None
         self._map_hits, self._hits = HitPoints(), HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._placed: OccupancyGrid | None = None  # newest that was placed
@@ -191,15 +192,11 @@ class ObstacleTracker:
         """Return points of this radius for lethal cells of the map."""
         assert self._map is not None, "called with a map"
         spec = self._map[1]
-        if self._map_masks is None or self._map_masks[0] != self._map_ns:
-            masks = np.zeros(spec.shape, np.uint64)
+        if self._map_uv is None or self._map_uv[0] != self._map_ns:
             hits = self._map_hits.at(self._map_ns)
-            if hits is not None:
-                mark_points(masks, spec, hits)
-            self._map_masks = self._map_ns, masks
-        uv = spec.origin.inverse().apply(centers) / spec.resolution
-        cells = np.floor(uv[:, ::-1]).astype(np.int64)
-        return cell_points(self._map_masks[1], spec, cells, radius)
+            here = NO_POINTS if hits is None else hits
+            self._map_uv = self._map_ns, cell_coordinates(spec, here)
+        return local_cell_points(self._map_uv[1], spec, centers, radius)
 
     def _unseen(
         self, here: Layer, around: Pose2, reach_m: float
@@ -233,12 +230,27 @@ def _seen_also(now: Layer, before: Layer | None) -> Layer:
     """Return a layer whose cells are known where they are in one of two."""
     if before is None:
         return now
+    if before.spec == now.spec and not _has_lost(now.cells, before.cells):
+        return now
     cells = now.cells.copy()
     if before.spec == now.spec:
         np.copyto(cells, before.cells, where=cells == UNKNOWN)
     else:
         merge(cells, now.spec, before.cells, before.spec)
     return Layer(cells, now.spec)
+
+
+@kernel
+def _has_lost(now: Any, before: Any) -> bool:
+    """Return whether a cell is unknown now and was known before."""
+    for row in range(now.shape[0]):
+        new, old = now[row], before[row]
+        lost = False
+        for k in range(new.size):
+            lost |= (new[k] == UNKNOWN) & (old[k] != UNKNOWN)
+        if lost:
+            return True
+    return False
 
 
 def _stamp_ns(msg: OccupancyGrid) -> int:

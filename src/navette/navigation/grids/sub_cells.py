@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
+from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
 from navette.navigation.grids.windows import CellWindow
 
 SUB_CELLS = 8
@@ -22,6 +22,8 @@ _CIRCLE_POINTS = 8
 
 Masks = NDArray[np.uint64]
 Points = NDArray[np.float64]
+
+NO_POINTS = np.empty((0, 2))
 
 
 def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int64]:
@@ -35,21 +37,21 @@ def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int6
         spec: its geometry.
         points: (N, 2) in the grid's frame, m; those outside are ignored.
     """
-    uv = spec.origin.inverse().apply(points) / spec.resolution
-    cells: NDArray[np.int64] = _mark(masks, np.ascontiguousarray(uv, np.float64))
+    cells: NDArray[np.int64] = _mark(masks, cell_coordinates(spec, points), 0, 0)
     return cells
 
 
-def points_of(masks: Masks, spec: GridSpec, cells: NDArray[np.int64]) -> Points:
-    """Return the marked points (N, 2) of cells (M, 2) in the grid's frame, m."""
-    return points_by_cell(masks, spec, cells)[0]
-
-
 def points_by_cell(
-    masks: Masks, spec: GridSpec, cells: NDArray[np.int64]
+    masks: Masks,
+    spec: GridSpec,
+    cells: NDArray[np.int64],
+    first: tuple[int, int] = (0, 0),
 ) -> tuple[Points, NDArray[np.int64]]:
-    """Return :func:`points_of`, and for each point the index (N,) of its cell."""
-    uv, which = _points_by_cell(masks, np.ascontiguousarray(cells, np.int64))
+    """Return the marked points (N, 2) of cells (M, 2), m, and the cell (N,) of each.
+
+    ``first``: row and column of the grid at which the masks begin.
+    """
+    uv, which = _points_by_cell(masks, np.ascontiguousarray(cells, np.int64), *first)
     return spec.origin.apply(uv * spec.resolution), which
 
 
@@ -74,19 +76,51 @@ def marked_points(
 
 
 def cell_points(
-    masks: Masks, spec: GridSpec, cells: NDArray[np.int64], radius_m: float
+    masks: Masks,
+    spec: GridSpec,
+    cells: NDArray[np.int64],
+    radius_m: float,
+    first: tuple[int, int] = (0, 0),
 ) -> Points:
     """Return points (N, 2), m, that with this radius stand for lethal cells (M, 2).
 
     These are the marked points, and of a cell without one a circle of points about its
-    centre: with the radius they cover the border of half a cell.
+    centre: with the radius they cover the border of half a cell. ``first`` as in
+    :func:`points_by_cell`.
     """
-    unmarked = cells[masks[cells[:, 0], cells[:, 1]] == 0]
+    unmarked = cells[masks[cells[:, 0] - first[0], cells[:, 1] - first[1]] == 0]
     around = np.arange(_CIRCLE_POINTS) * (2 * np.pi / _CIRCLE_POINTS)
     away = max(0.0, 0.5 * spec.resolution - radius_m)
     circle = away * np.column_stack([np.cos(around), np.sin(around)])
     circles = spec.centers_of(unmarked)[:, None, :] + circle
-    return np.concatenate([points_of(masks, spec, cells), circles.reshape(-1, 2)])
+    marked = points_by_cell(masks, spec, cells, first)[0]
+    return np.concatenate([marked, circles.reshape(-1, 2)])
+
+
+def local_cell_points(
+    uv: Points, spec: GridSpec, centers: Points, radius_m: float
+) -> Points:
+    """Return :func:`cell_points` of a few lethal cells near each other.
+
+    Args:
+        uv: (N, 2) the grid's points as :func:`cell_coordinates`.
+        spec: geometry of the grid.
+        centers: (M, 2) in the grid's frame, m: the lethal cells.
+        radius_m: of each point.
+    """
+    if not len(centers):
+        return NO_POINTS
+    cells = np.floor(cell_coordinates(spec, centers)[:, ::-1]).astype(np.int64)
+    first = cells.min(axis=0)
+    rows, columns = (cells.max(axis=0) - first + 1).tolist()
+    masks = np.zeros((rows, columns), np.uint64)
+    _mark(masks, uv, int(first[0]), int(first[1]))
+    return cell_points(masks, spec, cells, radius_m, (int(first[0]), int(first[1])))
+
+
+def cell_coordinates(spec: GridSpec, points: Points) -> Points:
+    """Return points (N, 2), m, as u, v in cells from the grid's corner."""
+    return np.ascontiguousarray(spec.origin.inverse().apply(points) / spec.resolution)
 
 
 def point_radius(resolution: float) -> float:
@@ -95,20 +129,25 @@ def point_radius(resolution: float) -> float:
 
 
 @kernel
-def _mark(masks: Any, uv: Any) -> Any:
-    """Mark points (N, 2) u, v in cells; return the cells (M, 2), row by row."""
+def _mark(masks: Any, uv: Any, first_row: int, first_column: int) -> Any:
+    """Mark points (N, 2) u, v in cells; return the cells (M, 2), row by row.
+
+    The masks begin at a row and column of the grid.
+    """
     height, width = masks.shape
+    low_u, high_u = float(first_column), float(first_column + width)
+    low_v, high_v = float(first_row), float(first_row + height)
     for k in range(uv.shape[0]):
         u, v = uv[k, 0], uv[k, 1]
-        if 0 <= u < width and 0 <= v < height:
-            masks[int(v), int(u)] = 0
+        if low_u <= u < high_u and low_v <= v < high_v:
+            masks[int(v) - first_row, int(u) - first_column] = 0
     indices = np.empty(uv.shape[0], np.int64)
     count = 0
     for k in range(uv.shape[0]):
         u, v = uv[k, 0], uv[k, 1]
-        if not (0 <= u < width and 0 <= v < height):
+        if not (low_u <= u < high_u and low_v <= v < high_v):
             continue
-        row, column = int(v), int(u)
+        row, column = int(v) - first_row, int(u) - first_column
         part = int(v % 1.0 * SUB_CELLS) * SUB_CELLS + int(u % 1.0 * SUB_CELLS)
         if masks[row, column] == 0:
             indices[count] = row * width + column
@@ -117,16 +156,17 @@ def _mark(masks: Any, uv: Any) -> Any:
     ordered = np.sort(indices[:count])
     cells = np.empty((count, 2), np.int64)
     for k in range(count):
-        cells[k, 0], cells[k, 1] = ordered[k] // width, ordered[k] % width
+        cells[k, 0] = ordered[k] // width + first_row
+        cells[k, 1] = ordered[k] % width + first_column
     return cells
 
 
 @kernel
-def _points_by_cell(masks: Any, cells: Any) -> Any:
+def _points_by_cell(masks: Any, cells: Any, first_row: int, first_column: int) -> Any:
     """Return the marked points (N, 2) u, v in cells, and the index of each one's."""
     count = 0
     for k in range(cells.shape[0]):
-        mask = masks[cells[k, 0], cells[k, 1]]
+        mask = masks[cells[k, 0] - first_row, cells[k, 1] - first_column]
         while mask != 0:
             mask &= mask - np.uint64(1)
             count += 1
@@ -134,7 +174,7 @@ def _points_by_cell(masks: Any, cells: Any) -> Any:
     found = 0
     for k in range(cells.shape[0]):
         row, column = cells[k, 0], cells[k, 1]
-        mask = masks[row, column]
+        mask = masks[row - first_row, column - first_column]
         bit = 0
         while mask != 0:
             if mask & np.uint64(1):
@@ -154,6 +194,11 @@ def _lethal_marked(masks: Any, cells: Any, window: Any) -> Any:
     count = 0
     for row in range(window.first_row, window.last_row):
         line = cells[row, window.first_column : window.last_column]
+        highest = np.int8(FREE)
+        for k in range(line.size):
+            highest = max(highest, line[k])
+        if highest < LETHAL:
+            continue
         for k in range(line.size):
             if line[k] < LETHAL or masks[row, window.first_column + k] == 0:
                 continue

@@ -47,7 +47,10 @@ class VanishedCells:
         passes = self._passes[window.slices]
         passes[beside] = 0
         first = np.array((window.first_row, window.first_column))
-        rows, columns = np.unique(cells - first, axis=0).T
+        width = window.shape[1]
+        rows, columns = np.divmod(
+            np.unique((cells - first) @ np.array((width, 1))), max(width, 1)
+        )
         still = ~beside[rows, columns]
         rows, columns = rows[still], columns[still]
         passes[rows, columns] += 1

@@ -7,6 +7,7 @@ ends when the goal's own bucket is empty, which keeps the result exact.
 Diagonal moves need both orthogonal neighbours free.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from navette.navigation.planning.bucket_queue import (
     push,
     reserve,
 )
+from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
     DIAGONAL,
@@ -31,14 +33,16 @@ from navette.navigation.planning.traversal import (
     require_inside,
 )
 
-# A record per cell: stamp << 48 | g << 4 | closed << 3 | direction. The stamp decreases
-# with every query, so records of earlier queries compare as more expensive than any
-# and need no clearing.
-_FIRST_STAMP = 32_766
+# A record per cell: stamp << 48 | (most − g) << 4 | closed << 3 | direction. The stamp
+# increases with every query, so records of earlier queries, and the zeros of a new
+# array, compare as more expensive than any and need no clearing. Memory that no search
+# has touched is not occupied.
+_LAST_STAMP = 32_766
 _G_MASK = (1 << 44) - 1
 _OBLIQUE = DIAGONAL - STRAIGHT
 _CLOSED = 8
 _NEVER = 1 << 60
+_NOWHERE = np.zeros((1, 1), np.int64)
 
 
 @PLANNERS.register("a_star")
@@ -48,7 +52,7 @@ class AStar:
     def __init__(self) -> None:
         self._records = np.empty(0, np.int64)
         self._pool = new_pool()
-        self._stamp = _FIRST_STAMP
+        self._stamp = 0
 
     def search(
         self,
@@ -57,6 +61,8 @@ class AStar:
         goal: Cell,
         *,
         table: EdgeTable | None = None,
+        bound: float = math.inf,
+        cheap: CheapTiles | None = None,
     ) -> tuple[NDArray[np.int64], int] | None:
         """Return cells (N, 2) row, column from start to goal, and the cost in units.
 
@@ -65,9 +71,11 @@ class AStar:
             start: first cell; its own cost does not count.
             goal: last cell.
             table: cost of entering a cell.
+            bound: cost in units from which a path is not wanted.
+            cheap: where cells cost less than elsewhere, for a better heuristic.
 
         Returns:
-            None if no path exists, or an end is closed.
+            None if no path exists below the bound, or an end is closed.
         """
         require_inside(start, cost.shape, "start")
         require_inside(goal, cost.shape, "goal")
@@ -85,8 +93,11 @@ class AStar:
             goal[1] + 1,
             np.int64(self._stamp << 48),
             self._records,
+            min(int(min(bound, _NEVER)), _NEVER),
+            *_elsewhere(cheap, goal, table),
         )
-        queue = BucketQueue.spanning(table.longest + DIAGONAL)
+        steepest = query.excess * TILE * DIAGONAL // 10_000
+        queue = BucketQueue.spanning(table.longest + DIAGONAL + steepest)
         total, self._pool = _search(grid, query, queue, self._pool)
         if total < 0:
             return None
@@ -94,14 +105,28 @@ class AStar:
         return _trace(self._records, grid.stride, *ends), total
 
     def _prepare(self, size: int) -> None:
-        self._stamp -= 1
-        if self._records.size != size or self._stamp < 0:
-            self._records = np.full(size, np.iinfo(np.int64).max, np.int64)
-            self._stamp = _FIRST_STAMP
+        self._stamp += 1
+        if self._records.size != size or self._stamp > _LAST_STAMP:
+            self._records = np.zeros(size, np.int64)
+            self._stamp = 1
+
+
+def _elsewhere(
+    cheap: CheapTiles | None, goal: Cell, table: EdgeTable
+) -> tuple[NDArray[np.int64], int]:
+    """Return ``away`` and ``excess``; a goal among cheap cells needs neither."""
+    if cheap is None or cheap.distances()[goal[0] // TILE, goal[1] // TILE] == 0:
+        return _NOWHERE, 0
+    return cheap.distances(), cheap.excess(table)
 
 
 class _Query(NamedTuple):
-    """Ends in the rimmed grid, the query's stamp in a record, and the records."""
+    """Ends in the rimmed grid, the query's stamp in a record, and the records.
+
+    ``bound``: cost from which a path is not wanted. ``away``: distance of each tile
+    from the cheap ones, in units; ``excess``: what a unit of cost elsewhere costs more,
+    in 1/10000.
+    """
 
     start_row: int
     start_column: int
@@ -109,6 +134,9 @@ class _Query(NamedTuple):
     goal_column: int
     base: np.int64
     records: NDArray[np.int64]
+    bound: int
+    away: NDArray[np.int64]
+    excess: int
 
 
 @kernel
@@ -124,10 +152,11 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
         queue.shift,
     )
     row, column = query.start_row, query.start_column
-    bucket = _octile(row - query.goal_row, column - query.goal_column) >> shift
-    records[row * stride + column] = query.base
+    bucket = _to_goal(query, row, column) >> shift
+    records[row * stride + column] = query.base | (_G_MASK << 4)
     push(pool, queue, bucket, (row << 16) | column)
-    best: Any = np.int64(_NEVER)
+    best: Any = np.int64(query.bound)
+    found = False
     while state[WAITING] > 0 and bucket <= best >> shift:
         item = pop(pool, queue, bucket)
         if item < 0:
@@ -140,9 +169,11 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
             continue
         records[index] = record | _CLOSED
         pool = reserve(pool, queue, 8)
-        g = (record >> 4) & _G_MASK
-        best = _expand(grid, query, queue, pool, row, column, g, best)
-    return (best if best < _NEVER else np.int64(-1)), pool
+        g = _G_MASK - ((record >> 4) & _G_MASK)
+        least = _expand(grid, query, queue, pool, bucket, row, column, g, best)
+        found |= least < best
+        best = least
+    return (best if found else np.int64(-1)), pool
 
 
 @kernel(forceinline=True)
@@ -151,12 +182,17 @@ def _expand(
     query: Any,
     queue: Any,
     pool: Any,
+    bucket: int,
     row: int,
     column: int,
     g: int,
     best: int,
 ) -> Any:
-    """Offer g + edge to the eight neighbours; return the goal's least g so far."""
+    """Offer g + edge to the eight neighbours; return the goal's least g so far.
+
+    Where the heuristic falls by more than a step costs, the bound of the cell that is
+    expanded also holds for its neighbours (pathmax, Mérő 1984).
+    """
     cost, stride, straight, diagonal = grid
     records, base = query.records, query.base
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
@@ -177,19 +213,39 @@ def _expand(
             continue
         else:
             edge = diagonal[cost[reached]]
-        candidate = base | ((g + edge) << 4) | k
-        if edge == 0 or (candidate | 15) >= records[reached]:
+        candidate = base | ((_G_MASK - g - edge) << 4) | k
+        if edge == 0 or candidate <= (records[reached] | 15):
             continue
         row_new, column_new = row + rows[k], column + columns[k]
-        f = g + edge + _octile(row_new - query.goal_row, column_new - query.goal_column)
+        f = g + edge + _to_goal(query, row_new, column_new)
         if f >= best:
             continue
         records[reached] = candidate
         if row_new == query.goal_row and column_new == query.goal_column:
             best = g + edge
         else:
-            push(pool, queue, f >> queue.shift, (row_new << 16) | column_new)
+            at = max(bucket, f >> queue.shift)
+            push(pool, queue, at, (row_new << 16) | column_new)
     return best
+
+
+@kernel(forceinline=True)
+def _to_goal(query: Any, row: Any, column: Any) -> Any:
+    """Return the least cost from a cell of the rimmed grid to the goal.
+
+    A path leaves the tile of the cell towards a cheap one, and ends at the goal behind
+    the last cheap one: that much of it, at least, is not cheap.
+    """
+    least = _octile(row - query.goal_row, column - query.goal_column)
+    if query.excess == 0:
+        return least
+    away, tile = query.away, np.uint64(TILE)
+    here = away[np.uint64(row - 1) // tile, np.uint64(column - 1) // tile]
+    there = away[
+        np.uint64(query.goal_row - 1) // tile, np.uint64(query.goal_column - 1) // tile
+    ]
+    apart = min(least, here + there)
+    return least + apart * query.excess // 10_000
 
 
 @kernel(forceinline=True)

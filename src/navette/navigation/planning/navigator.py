@@ -323,7 +323,9 @@ class Navigator:
         reach = math.dist((here.x, here.y), (goal.x, goal.y))
         if reach - self.params.goal_tolerance_m >= worth:
             return  # not even the straight line is cheaper by the margin
-        other = self.planner.plan_on_grid(here, goal)
+        if self.planner.least_cost(here, goal) >= worth:
+            return  # nor is it through what is known
+        other = self.planner.plan_on_grid(here, goal, below_m=worth)
         if other is not None and other.cost < worth:
             self._accept(other, here)
 

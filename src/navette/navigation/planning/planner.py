@@ -46,6 +46,7 @@ from navette.navigation.planning.planning_grid import (
 )
 from navette.navigation.planning.planning_map import PlanningMap
 from navette.navigation.planning.route import GridRouter
+from navette.navigation.planning.traversal import STRAIGHT
 from navette.params.plugins import MethodFaultError
 
 __all__ = ["Goal", "Plan", "Planner"]
@@ -390,10 +391,13 @@ class Planner:
         rim = around[[0, -1]].any() or around[:, [0, -1]].any()
         return Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
 
-    def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
+    def plan_on_grid(
+        self, start: Pose2, goal: Goal, below_m: float = math.inf
+    ) -> Plan | None:
         """Plan with the grid search alone and the full margin; None without a path.
 
-        This is cheap, to look for a better path while one is being driven.
+        This is cheap, to look for a better path while one is being driven: one that
+        cannot cost less than ``below_m`` may not be found.
         """
         self.hold(goal)
         if self._own is not None or self._refusal(start, goal) is not None:
@@ -402,13 +406,23 @@ class Planner:
         grid = self._opened(margin, start)
         xy = goal.x, goal.y
         try:
-            route = self.router.route(grid, self.body, start, xy, goal.yaw)
+            route = self.router.route(grid, self.body, start, xy, goal.yaw, below_m)
         except MethodFaultError:
             return None
         if route is None:
             return None
         poses = self._cut_to_fit(grid, start, goal, route)
         return None if poses is None else self._planned(goal, poses, margin, 0)
+
+    def least_cost(self, start: Pose2, goal: Goal) -> float:
+        """Return a lower bound on the cost of a path within the goal's tolerance."""
+        grid = self.grid()
+        begin, end = grid.cell_of(start.x, start.y), grid.cell_of(goal.x, goal.y)
+        if begin is None or end is None:
+            return 0.0
+        most = float(grid.table.straight[grid.costs.unknown]) / STRAIGHT
+        slack = self.params.goal_tolerance_m + grid.spec.resolution
+        return grid.least_cost_m(begin, end) - max(most, 1.0) * slack
 
     def cost_of(self, poses: Poses) -> float:
         """Return the cost of these poses on the newest map; see path_cost."""

@@ -23,13 +23,18 @@ from navette.navigation.grids import (
     mark_points,
 )
 from navette.navigation.planning.cell_costs import CellCosts
+from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
     MAX_PASSABLE_COST,
+    STRAIGHT,
     Cell,
     EdgeTable,
 )
+
+# Largest ratio of an 8-connected path's length to the straight line's.
+_OCTILE_RATIO = 1.0824
 
 NO_HITS = np.empty((0, 2))
 
@@ -89,6 +94,7 @@ class PlanningGrid:
         costs: how the cells became costs.
         margin_m: clearance that the body keeps.
         hits: (N, 2) map frame, m: where beams ended; empty = not known.
+        cheap: where cells cost less than unknown ones, if those cost more at all.
     """
 
     spec: GridSpec
@@ -98,6 +104,7 @@ class PlanningGrid:
     costs: CellCosts
     margin_m: float
     hits: NDArray[np.float64]
+    cheap: CheapTiles | None = None
 
     def copy(self) -> "PlanningGrid":
         """Return a grid with arrays of its own."""
@@ -106,7 +113,19 @@ class PlanningGrid:
             obstacles=self.obstacles.copy(),
             distance_m=self.distance_m.copy(),
             cost=self.cost.copy(),
+            cheap=None if self.cheap is None else self.cheap.copy(),
         )
+
+    def least_cost_m(self, start: Cell, goal: Cell) -> float:
+        """Return a lower bound on the cost between two cells, in free metres."""
+        apart = math.dist(start, goal)
+        if self.cheap is None:
+            return apart * self.spec.resolution
+        away = self.cheap.distances()
+        cells = (away[start[0] // TILE, start[1] // TILE] + away[
+            goal[0] // TILE, goal[1] // TILE]) / STRAIGHT / _OCTILE_RATIO  # fmt: skip
+        excess = self.cheap.excess(self.table) / 10_000
+        return (apart + excess * min(apart, float(cells))) * self.spec.resolution
 
     @cached_property
     def exact_obstacles(self) -> ObstacleGrid:
@@ -186,8 +205,16 @@ def planning_grid(
         obstacles, distance_m, spec.resolution, CellWindow.whole(spec.shape)
     )
     costs.fill(occupancy, distance_m, cost, whole)
+    has_floor = 0 < costs.unknown < LETHAL
     return PlanningGrid(
-        spec, obstacles, distance_m, cost, costs, params.clearance_margin_m, hits
+        spec,
+        obstacles,
+        distance_m,
+        cost,
+        costs,
+        params.clearance_margin_m,
+        hits,
+        CheapTiles(cost, int(costs.unknown)) if has_floor else None,
     )
 
 
@@ -223,6 +250,8 @@ def update_grid(
             grid.costs.measure(grid.obstacles, grid.distance_m, resolution, moved)
         )
     fell = grid.costs.fill(occupancy, grid.distance_m, grid.cost, window)
+    if grid.cheap is not None:
+        grid.cheap.update(grid.cost, window)
     return replace(grid, hits=hits), fell
 
 
@@ -247,6 +276,8 @@ def without_obstacles_in(
         other.obstacles, other.distance_m, other.spec.resolution, window
     )
     other.costs.fill(occupancy, other.distance_m, other.cost, changed)
+    if other.cheap is not None:
+        other.cheap.update(other.cost, changed)
     return other
 
 

@@ -24,7 +24,10 @@ from navette.navigation.planning.path_shape import (
 )
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.string_pulling import centers, pull
+from navette.navigation.planning.traversal import STRAIGHT
 
+# Largest cost of a path of cells, compared with that of the line pulled from it.
+_PULL_RATIO = 1.15
 # Above this angle both directions of a turn are of similar length.
 _NEARLY_HALF_TURN = 2.4
 
@@ -50,6 +53,8 @@ class GridRouter:
         self.params = params
         self.centres = centres
         self._search = _make_search(params)
+        owner = getattr(self._search, "__self__", None)
+        self._a_star = owner if isinstance(owner, AStar) else None
 
     def with_params(self, params: PlannerParams) -> "GridRouter":
         """Return a router with other parameters that uses the same search."""
@@ -64,13 +69,17 @@ class GridRouter:
         start: Pose2,
         goal_xy: tuple[float, float],
         goal_yaw: float | None = None,
+        below_m: float = math.inf,
     ) -> Poses | None:
         """Return poses (N, 3) from the start pose to the goal; None without a path.
+
+        A path that cannot cost less than ``below_m`` metres of free driving may not be
+        found.
 
         Start and goal lie in the grid. The path begins with a turn in place if the
         heading error exceeds the threshold, and ends with one to ``goal_yaw``.
         """
-        cells = self._cells(grid, (start.x, start.y), goal_xy)
+        cells = self._cells(grid, (start.x, start.y), goal_xy, below_m)
         if cells is None:
             return None
         ends = np.array([(start.x, start.y), goal_xy])
@@ -87,11 +96,24 @@ class GridRouter:
         grid: PlanningGrid,
         start_xy: tuple[float, float],
         goal_xy: tuple[float, float],
+        below_m: float,
     ) -> NDArray[np.int64] | None:
         start, goal = grid.cell_of(*start_xy), grid.cell_of(*goal_xy)
         assert start is not None, "the start lies in the grid"
         assert goal is not None, "the goal lies in the grid"
-        found = self._search(grid.cost, start, goal, table=grid.table)
+        if self._a_star is None:
+            found = self._search(grid.cost, start, goal, table=grid.table)
+        else:
+            # A path of cells is longer than the one that is pulled from it.
+            bound = _PULL_RATIO * below_m / grid.spec.resolution * STRAIGHT
+            found = self._a_star.search(
+                grid.cost,
+                start,
+                goal,
+                table=grid.table,
+                bound=bound,
+                cheap=grid.cheap,
+            )
         return None if found is None else found[0]
 
     def _with_headings(

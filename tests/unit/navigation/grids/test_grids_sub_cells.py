@@ -12,7 +12,7 @@ from navette.navigation.grids import (
     make_outline,
     mark_points,
     point_radius,
-    points_of,
+    points_by_cell,
     points_to_message,
 )
 
@@ -32,7 +32,7 @@ def some_points(count: int) -> np.ndarray:
 def test_points_come_back_to_half_a_sub_cell() -> None:
     points = some_points(40)
     masks, cells = marked(points)
-    back = points_of(masks, SPEC, cells)
+    back = points_by_cell(masks, SPEC, cells)[0]
     gaps = np.hypot(*(points[:, None] - back[None]).transpose(2, 0, 1))
     assert gaps.min(axis=1).max() <= 2**0.5 * point_radius(0.1) + 1e-9
     assert len(cells) == len({SPEC.cell_of(x, y) for x, y in points.tolist()})

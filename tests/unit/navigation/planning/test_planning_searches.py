@@ -107,7 +107,7 @@ def test_results_do_not_depend_on_earlier_queries() -> None:
 
 
 def test_exhausted_stamps_are_reset(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("navette.navigation.planning.astar._FIRST_STAMP", 2)
+    monkeypatch.setattr("navette.navigation.planning.astar._LAST_STAMP", 2)
     search = AStar()
     cost = np.zeros((5, 5), np.uint8)
     for column in (4, 3, 2, 4, 1, 2):

@@ -1,0 +1,103 @@
+"""Where in a grid cells cost less than a floor: a tighter heuristic for searches.
+
+The straight line to the goal at the cost of free cells is a loose bound where most of
+the map is unknown and costs more. Of a path between two cells, at least the parts from
+each to the nearest cheaper cell cost the floor. The distances to cheaper cells are
+those of square tiles, which are fewer by a factor of 64, and rounded down.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.files.kernels import kernel
+from navette.navigation.grids import CellWindow
+from navette.navigation.planning.traversal import DIAGONAL, STRAIGHT, EdgeTable
+
+TILE = 8
+"""Edge of a tile, cells."""
+_FAR = 1 << 40
+
+
+class CheapTiles:
+    """Tiles with a cell below the floor, kept up to date where costs change.
+
+    Args:
+        cost: (H, W) cell costs.
+        floor: cost of a cell from which it is not cheap.
+    """
+
+    def __init__(self, cost: NDArray[np.uint8], floor: int) -> None:
+        self._floor = floor
+        shape = tuple(-(-size // TILE) for size in cost.shape)
+        self._cheap = np.zeros(shape, np.bool_)
+        self._distances: NDArray[np.int64] | None = None
+        self.update(cost, CellWindow.whole(cost.shape))
+
+    def update(self, cost: NDArray[np.uint8], window: CellWindow) -> None:
+        """Mark the tiles of a window of the grid (H, W)."""
+        if _mark_cheap(cost, np.uint8(self._floor), window, self._cheap):
+            self._distances = None
+
+    def distances(self) -> NDArray[np.int64]:
+        """Return (h, w) a lower bound on the octile distance to a cheap cell, units."""
+        if self._distances is None:
+            away = np.pad(np.where(self._cheap, 0, _FAR), 1, constant_values=_FAR)
+            _spread(away)
+            # Cells of two tiles are nearer than the tiles by up to a tile each way.
+            inner = np.maximum(away[1:-1, 1:-1] - DIAGONAL, 0) * TILE
+            self._distances = np.ascontiguousarray(inner)
+        return self._distances
+
+    def excess(self, table: EdgeTable) -> int:
+        """Return what a unit of distance costs more elsewhere, in 1/10000."""
+        straight = int(table.straight[self._floor]) / STRAIGHT
+        diagonal = int(table.diagonal[self._floor]) / DIAGONAL
+        return max(0, int((min(straight, diagonal) - 1) * 10_000))
+
+    def copy(self) -> "CheapTiles":
+        """Return tiles that change independently."""
+        other: CheapTiles = object.__new__(CheapTiles)
+        other._floor, other._cheap = self._floor, self._cheap.copy()
+        other._distances = None
+        return other
+
+
+@kernel
+def _mark_cheap(cost: Any, floor: Any, window: Any, cheap: Any) -> bool:
+    """Mark the tiles of a window; return whether any mark changed."""
+    height, width = cost.shape
+    changed = False
+    for i in range(window.first_row // TILE, (window.last_row - 1) // TILE + 1):
+        for j in range(
+            window.first_column // TILE, (window.last_column - 1) // TILE + 1
+        ):
+            found = False
+            for row in range(i * TILE, min(height, (i + 1) * TILE)):
+                line = cost[row, j * TILE : min(width, (j + 1) * TILE)]
+                for k in range(line.size):
+                    found |= line[k] < floor
+                if found:
+                    break
+            changed |= found != cheap[i, j]
+            cheap[i, j] = found
+    return changed
+
+
+@kernel
+def _spread(away: Any) -> None:
+    """Turn 0 and far into octile distances between tiles, units; a rim stays far."""
+    height, width = away.shape
+    for i in range(1, height - 1):
+        above, line = away[i - 1], away[i]
+        for j in range(1, width - 1):
+            straight = min(line[j - 1], above[j]) + STRAIGHT
+            diagonal = min(above[j - 1], above[j + 1]) + DIAGONAL
+            line[j] = min(line[j], straight, diagonal)
+    for i in range(height - 2, 0, -1):
+        below, line = away[i + 1], away[i]
+        for j in range(width - 2, 0, -1):
+            straight = min(line[j + 1], below[j]) + STRAIGHT
+            diagonal = min(below[j - 1], below[j + 1]) + DIAGONAL
+            line[j] = min(line[j], straight, diagonal)
