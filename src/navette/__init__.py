@@ -4,6 +4,7 @@ rclpy's names are here too (``from navette import Node, spin``); they are loaded
 first used, so that ``import navette`` costs next to nothing.
 """
 
+import sys
 from importlib import import_module  # noqa: TID251 - see _COMMANDER
 from typing import TYPE_CHECKING, Any
 
@@ -55,3 +56,14 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *_RUNTIME_NAMES, *_COMMANDER_NAMES})
+
+
+def register_environment(gymnasium: Any) -> None:
+    """Register the environment for learning by its name; it is loaded when made."""
+    name = "navette/Navigation-v0"
+    if name not in gymnasium.registry:
+        gymnasium.register(name, entry_point="navette.gym.environment:NavigationEnv")
+
+
+if hasattr(sys.modules.get("gymnasium"), "register"):  # was imported before
+    register_environment(sys.modules["gymnasium"])

@@ -1,16 +1,17 @@
 """Gymnasium environments: the simulator as a task for learning.
 
-Importing the package registers them, as Gymnasium provides for (its releases from 1.0
-look for no entry points)::
+Gymnasium (from 1.0 on) looks for no entry points: an import registers them, this one
+or, after Gymnasium's, that of ``navette`` alone::
 
     import gymnasium
-    import navette.gym
+    import navette
 
     gymnasium.make("navette/Navigation-v0", world="barn-like", robot="jackal")
 
-Without the second import the id is ``navette.gym:navette/Navigation-v0``.
+Without either the id is ``navette.gym:navette/Navigation-v0``.
 """
 
+from navette import register_environment
 from navette.errors import MissingPartError
 
 try:
@@ -26,8 +27,4 @@ from navette.gym.params import NavigationEnvParams
 
 __all__ = ["NavigationEnv", "NavigationEnvParams", "Observer"]
 
-if "navette/Navigation-v0" not in gymnasium.registry:
-    gymnasium.register(
-        id="navette/Navigation-v0",
-        entry_point="navette.gym.environment:NavigationEnv",
-    )
+register_environment(gymnasium)

@@ -1,6 +1,8 @@
 """The environment follows Gymnasium's API, is repeatable, and means what it states."""
 
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from typing import Any
 
@@ -319,3 +321,27 @@ def test_a_robot_without_a_scanner_is_named() -> None:
 def test_the_package_registers_the_id() -> None:
     assert ID in gymnasium.registry
     assert set(navette.gym.__all__) <= set(dir(navette.gym))
+
+
+@pytest.mark.parametrize(
+    ("imports", "name"),
+    [
+        ("import gymnasium, navette", ID),
+        ("import navette, gymnasium, navette.gym", ID),
+        ("import gymnasium", f"navette.gym:{ID}"),
+    ],
+)
+def test_a_new_program_makes_the_environment(imports: str, name: str) -> None:
+    program = f"{imports}; print(gymnasium.make({name!r}, world='arena').spec.id)"
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert ended.stdout.strip() == ID
+
+
+def test_navette_alone_does_not_import_gymnasium() -> None:
+    program = "import sys, navette; print('gymnasium' in sys.modules)"
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert ended.stdout.strip() == "False"

@@ -120,7 +120,9 @@ def test_a_program_that_steers_a_car_masks_navigation(bench: Bench) -> None:
     assert bench.commander == "emergency_stop"
 
 
-def test_a_car_stops_when_the_program_that_steers_it_falls_silent(bench: Bench) -> None:
+def test_a_car_stops_when_the_program_that_steers_it_stops_publishing(
+    bench: Bench,
+) -> None:
     bench.send("/drive", AckermannDriveStamped())
     bench.graph.run_for(0.6)
     assert bench.commands.last == Twist()
