@@ -53,6 +53,7 @@ def test_a_pose_is_driven_to_and_a_task_cancelled(simulate: MakeSimulation) -> N
 def test_poses_are_driven_through(simulate: MakeSimulation) -> None:
     simulation = simulate(world="arena")
     navigator = BasicNavigator(context=simulation.context)
+    navigator.waitUntilNav2Active()  # the simulated time advances meanwhile
     route = [pose(2.0, 0.0), pose(2.0, 2.0, 1.57), pose(3.5, 3.5)]
     assert navigator.goThroughPoses(route)
     assert wait(navigator) is TaskResult.SUCCEEDED

@@ -92,6 +92,7 @@ class BasicNavigator(Node):
         self.initial_pose = PoseStamped()
         self.initial_pose.header.frame_id = "map"
         self.initial_pose_received = False
+        self._pose_future: Any = runtime.Future()
         self.goal_handle: Any = None
         self.result_future: Any = None
         self.feedback: Any = None
@@ -549,7 +550,11 @@ class BasicNavigator(Node):
             self.info("Setting initial pose")
             self._setInitialPose()
             self.info("Waiting for amcl_pose to be received")
-            runtime.spin_once(self, timeout_sec=_RETRY_S)
+            # The whole time, not one callback: time advances in simulated time too.
+            self._pose_future = runtime.Future()
+            runtime.spin_until_future_complete(
+                self, self._pose_future, timeout_sec=_RETRY_S
+            )
 
     def _setInitialPose(self) -> None:
         msg = PoseWithCovarianceStamped(header=self.initial_pose.header)
@@ -560,6 +565,8 @@ class BasicNavigator(Node):
     def _amclPoseCallback(self, msg: PoseWithCovarianceStamped) -> None:
         self.debug("Received amcl pose")
         self.initial_pose_received = True
+        if not self._pose_future.done():
+            self._pose_future.set_result(msg)
 
     def _feedbackCallback(self, msg: Any) -> None:
         self.debug("Received action feedback message")
