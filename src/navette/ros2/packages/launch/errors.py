@@ -1,5 +1,7 @@
 """Exceptions of launches."""
 
+from collections.abc import Sequence
+
 from navette.errors import InvalidValueError, NavetteError
 
 
@@ -34,7 +36,24 @@ class InvalidConditionExpressionError(InvalidValueError):
 
 
 class InvalidLaunchFileError(NavetteError, RuntimeError):
-    """A file is not a valid launch file."""
+    """A file is not a valid launch file.
+
+    Args:
+        text: what is wrong.
+        extension: ending of the file's name.
+        likely_errors: what the parsers of its possible formats raised.
+    """
+
+    def __init__(
+        self,
+        text: str = "",
+        *,
+        extension: str = "",
+        likely_errors: Sequence[BaseException] = (),
+    ) -> None:
+        problems = [f"{type(each).__name__}: {each}" for each in likely_errors]
+        kind = f"launch file {extension!r} is not valid" if extension else ""
+        super().__init__("; ".join(filter(None, [text or kind, *problems])))
 
 
 class InvalidLaunchValueError(InvalidValueError, TypeError):

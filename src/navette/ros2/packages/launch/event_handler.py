@@ -38,7 +38,10 @@ class EventHandler:
     def handle(
         self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
-        """Return the entities to visit."""
+        """Return the entities to visit; ``context.locals.event`` is the event."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
         return list(self.entities)
 
     def describe(self) -> str:
@@ -72,6 +75,7 @@ class CallbackHandler(EventHandler):
     def handle(
         self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
+        entities = super().handle(event, context)
         if self._callback is None:
-            return super().handle(event, context)
+            return entities
         return normalize_to_list_of_entities(self._callback(event, context))

@@ -173,8 +173,8 @@ class OnIncludeLaunchDescription(EventHandler):
         )
 
     def handle(self, event: Event, context: Any) -> list[LaunchDescriptionEntity]:
-        assert isinstance(event, IncludeLaunchDescription), "the matcher selected it"
-        return [event.launch_description]
+        super().handle(event, context)
+        return [event.launch_description]  # type: ignore[attr-defined] # by the matcher
 
 
 def event_named(name: str) -> Callable[[Event], bool]:

@@ -31,6 +31,19 @@ class LaunchDescriptionEntity:
         """Return the entities inside, as far as they are known without running."""
         return []
 
+    def describe_conditional_sub_entities(
+        self,
+    ) -> "list[tuple[str, Iterable[LaunchDescriptionEntity]]]":
+        """Return entities that may be visited, each list with its condition."""
+        return []
+
+    def get_asyncio_future(self) -> None:
+        """Return None: what an entity does is over when it has been visited.
+
+        What runs on, such as a process, is in :attr:`LaunchContext.busy`.
+        """
+        return
+
 
 SomeEntitiesType: TypeAlias = (
     LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]

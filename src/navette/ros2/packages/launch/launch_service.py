@@ -172,10 +172,7 @@ class LaunchService:
 
     def _call_handler(self, handler: ContextHandler, event: Event) -> None:
         context = self.context
-        if handler.handle_once:
-            context.unregister_event_handler(handler)
         context.push_locals()
-        context.extend_locals({"event": event})
         try:
             where = getattr(handler, "origin", "") or "event handler"
             entities = _locate_errors(

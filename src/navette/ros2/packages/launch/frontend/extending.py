@@ -118,13 +118,13 @@ class Parser:
             path, text = Path(getattr(file, "name", "") or "launch"), file.read()
         readers = [FORMATS[path.suffix]] if path.suffix in FORMATS else []
         readers += [reader for reader in FORMATS.values() if reader not in readers]
-        problems = []
+        problems: list[Exception] = []
         for reader in dict.fromkeys(readers):
             try:
                 return reader(text.encode(), path), cls()
             except FileFormatError as error:
-                problems.append(str(error))
-        raise InvalidLaunchFileError("; ".join(problems))
+                problems.append(error)
+        raise InvalidLaunchFileError(extension=path.suffix, likely_errors=problems)
 
     def parse_description(self, entity: Element) -> LaunchDescription:
         """Return the description of the outermost element."""

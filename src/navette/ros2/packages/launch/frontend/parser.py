@@ -70,7 +70,9 @@ def parse_root(root: Element) -> LaunchDescription:
     if root.tag != "launch":
         raise root.error("expected <launch> as the outermost tag")
     root.value("version")
-    description = LaunchDescription(parse_elements(root.rest()))
+    description = LaunchDescription(
+        parse_elements(root.rest()), deprecated_reason=root.text("deprecated")
+    )
     root.finish()
     return description
 
