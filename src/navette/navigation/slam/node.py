@@ -15,8 +15,8 @@ from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3
 from navette.geometry.messages import header, transform_message
 from navette.msgs import topics
-from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
-from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from navette.msgs.nav_msgs.msg import Odometry, Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import grid_to_message
@@ -61,6 +61,10 @@ class SlamNode(StageNode):
         Output.of(topics.SLAM_POSE, "pose with covariance at each scan", rate_hz=10.0),
         Output.of(topics.AMCL_POSE, "the same under Nav2's name"),
         status_output(topics.LOCALIZATION_STATUS.name),
+        Output.of(
+            topics.TRAJECTORY,
+            "corrected poses at the key scans, after each loop closure",
+        ),
         Output.of(topics.SLAM_MAP, "map of the key scans, while it is subscribed to"),
     )
     FIXED_AT_START = frozenset(
@@ -140,6 +144,8 @@ class SlamNode(StageNode):
         self._newest_ns = stamp_ns
         self._report(estimate)
         self._publish_pose(stamp_ns, estimate)
+        if estimate.is_corrected:
+            self._publish_trajectory()
         if odom_T_base is not None:
             self._publish_transform(
                 stamp_ns, estimate.map_T_base @ odom_T_base.inverse()
@@ -189,6 +195,18 @@ class SlamNode(StageNode):
         message.pose.covariance = covariance.reshape(-1)
         self.publish(topics.SLAM_POSE.name, message)
         self.publish(topics.AMCL_POSE.name, message)
+
+    def _publish_trajectory(self) -> None:
+        """Publish where the robot was at the key scans, by the present map."""
+        graph, frame = self._slam.graph, self.params.map_frame
+        path = Path(header=header(self._newest_ns, frame))
+        path.poses = [
+            PoseStamped(
+                header=header(key.stamp_ns, frame), pose=pose_message(graph.pose(node))
+            )
+            for node, key in enumerate(graph.keys)
+        ]
+        self.publish(topics.TRAJECTORY.name, path)
 
     def _publish_transform(self, stamp_ns: int, map_T_odom: Pose2) -> None:
         params = self.params
