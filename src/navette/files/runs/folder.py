@@ -46,7 +46,7 @@ def existing_folders() -> Iterator[Path]:
     Terminals of one user can differ in ``XDG_RUNTIME_DIR`` (``su``, ``ssh``, ``cron``).
     """
     for folder in _candidates():
-        if folder.is_dir() and access_problem(folder) is None:
+        if access_problem(folder) is None:
             yield folder
 
 
@@ -98,5 +98,13 @@ def _candidates() -> Iterator[Path]:
         "/tmp",
     )
     for base in dict.fromkeys(bases):
-        if base.startswith("/") and not _SPECIAL & set(base) and Path(base).is_dir():
+        if base.startswith("/") and not _SPECIAL & set(base) and _is_folder(base):
             yield Path(base) / own
+
+
+def _is_folder(path: str) -> bool:
+    """Return whether a folder is there; not if it lies in another user's."""
+    try:
+        return stat.S_ISDIR(Path(path).stat().st_mode)
+    except OSError:
+        return False

@@ -1,6 +1,5 @@
 """A registry of its own for each test, and an environment that names no network."""
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,10 +27,3 @@ def demo() -> Iterator[PrivateRun]:
     run.publish("http://127.0.0.1:8765")
     yield run
     run.close()
-
-
-def other_user() -> int:
-    """Return the id of a user that owns nothing here; skip without the right."""
-    if os.getuid() != 0:
-        pytest.skip("becoming another user is not permitted here")
-    return 54_321
