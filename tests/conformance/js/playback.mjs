@@ -1,5 +1,5 @@
 // A browser on the page of a recording that is played: pauses, steps, seeks, changes
-// the rate; says what it sees.
+// the rate; prints what it displays.
 //
 //   node playback.mjs http://127.0.0.1:PORT CHROMIUM [SCREENSHOT]
 import { chromium } from "playwright-core";
@@ -17,39 +17,44 @@ try {
   page.on("pageerror", (error) => problems.push(String(error)));
   await page.goto(url);
   const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 60_000 });
-  const place = async () => (await page.textContent("#playback output")).split(" / ").map((text) => text.split(":").reduce((sum, part) => sum * 60 + Number(part), 0));
-  const status = (wanted) => until((s) => document.querySelector("#playback").dataset.status === s, wanted);
-  await page.waitForSelector("#playback", { state: "visible", timeout: 60_000 });
-  await status("paused");
+  await until(() => globalThis.navette?.connection.playback);
+  await page.evaluate(() => navette.open("playback"));
+  const bar = page.locator(".playback-bar");
+  await bar.waitFor();
+  const place = async () => (await bar.locator("output").textContent()).split(" / ").map((text) => text.split(":").reduce((sum, part) => sum * 60 + Number(part), 0));
+  const status = (wanted) => bar.locator(".playback-status", { hasText: wanted }).waitFor({ timeout: 60_000 });
+  const reaches = (least) => until((s) => parseFloat(document.querySelector(".playback-bar output").textContent.split(":")[1]) >= s, least);
+  await status("Paused");
   const [, length] = await place();
 
-  await page.click('#playback [name="step"]');
-  await page.click('#playback [name="play"]');
-  await status("playing");
-  await until(() => parseFloat(document.querySelector("#playback output").textContent.split(":")[1]) > 0.4);
+  await bar.getByRole("button", { name: "Next message" }).click();
+  await bar.getByRole("button", { name: "Play", exact: true }).click();
+  await status("Playing");
+  await reaches(0.4);
   const setRate = async (rate) => {
-    await page.selectOption('#playback [name="rate"]', String(rate));
-    await until((wanted) => playback.answered === playback.requests && playback.speed === wanted, rate);
+    await bar.getByRole("combobox", { name: "Rate" }).selectOption(String(rate));
+    await until((wanted) => navette.connection.playback.speed === wanted, rate);
   };
   await setRate(0.5);
 
-  const slider = await page.locator('#playback [name="place"]').boundingBox();
+  const slider = await bar.locator(".playback-slider").boundingBox();
   await page.mouse.click(slider.x + slider.width * 0.75, slider.y + slider.height / 2);
-  await until(() => playback.seeking === null && playback.timer === null && playback.slider.value > 7000);
-  await page.locator("h1").click();
-  await page.keyboard.press(" ");
-  await status("paused");
+  await reaches(14.2);
+  await bar.getByRole("button", { name: "Pause" }).click();
+  await status("Paused");
+  await page.waitForTimeout(600); // the handle is held for a moment after a seek
   const paused = await place();
   if (screenshot) await page.screenshot({ path: screenshot });
-  await setRate(50);
-  await page.click('#playback [name="play"]');
-  await status("ended");
+  await setRate(10);
+  await bar.getByRole("button", { name: "Play", exact: true }).click();
+  await status("Ended");
   const ended = await place();
   await setRate(1);
-  await page.click('#playback [name="play"]');
-  await status("playing");
+  await bar.getByRole("button", { name: "Play", exact: true }).click();
+  await status("Playing");
+  await until(() => parseFloat(document.querySelector(".playback-bar output").textContent.split(":")[1]) < 10);
   const again = await place();
-  console.log(JSON.stringify({ length, paused, ended, again, rate: await page.inputValue('#playback [name="rate"]'), problems }));
+  console.log(JSON.stringify({ length, paused, ended, again, rate: await bar.getByRole("combobox", { name: "Rate" }).inputValue(), problems }));
 } finally {
   await browser.close();
 }

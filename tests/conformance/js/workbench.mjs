@@ -1,0 +1,162 @@
+// A person at the page of `navette demo`: goals, panels, run control; the server ends and
+// returns; three sizes, two themes, and what axe finds in each.
+//
+//   node workbench.mjs http://127.0.0.1:PORT CHROMIUM FOLDER
+//
+// Prints what the page displays; waits for the line "back" on its input after "end".
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { createInterface } from "node:readline";
+import { chromium } from "playwright-core";
+
+const [url, executablePath, folder] = process.argv.slice(2);
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const input = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
+const browser = await chromium.launch({
+  executablePath,
+  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync"],
+});
+const seen = { problems: [], axe: {} };
+
+async function newPage(options) {
+  const context = await browser.newContext({ bypassCSP: true, ...options }); // axe is a script of the test
+  const page = await context.newPage();
+  page.on("pageerror", (error) => seen.problems.push(String(error)));
+  page.on("console", (message) => { if (message.type() === "error") seen.problems.push(message.text()); });
+  page.on("request", (request) => { if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(url)) seen.problems.push(request.url()); });
+  await page.goto(url);
+  await page.waitForFunction(() => globalThis.navette?.connection.status.state === "live", null, { timeout: 60_000 });
+  return page;
+}
+
+async function serious(page) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"] }));
+  return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 160)).join(" | ")}`);
+}
+
+try {
+  const page = await newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
+  const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 90_000, polling: 100 });
+  const open = (kind, settings = {}) => page.evaluate(([id, given]) => navette.open(id, given), [kind, settings]);
+
+  // The map grows.
+  await page.evaluate(() => {
+    window.known = [];
+    navette.connection.subscribe("/map", {}, ({ value }) => known.push(value.data.reduce((sum, cell) => sum + (cell >= 0), 0)));
+  });
+  await until(() => known.length > 3 && known.at(-1) > known[0]);
+  seen.known = await page.evaluate(() => [known[0], known.at(-1)]);
+
+  // A goal by a click near the robot, reached; then one with a heading.
+  const near = (dx) => page.evaluate((offset) => {
+    const { translation: [x, y] } = navette.transforms.lookUp("map", "base_link");
+    const { canvas } = navette.scene, box = canvas.getBoundingClientRect();
+    let best = null, least = Infinity;
+    for (let px = 150; px < canvas.clientWidth - 250; px += 6) {
+      for (let py = 90; py < canvas.clientHeight - 150; py += 6) {
+        const [gx, gy] = navette.scene.groundAt(px, py);
+        const off = Math.hypot(gx - x - offset, gy - y);
+        if (off < least) { least = off; best = [box.left + px, box.top + py]; }
+      }
+    }
+    return best;
+  }, dx);
+  const goals = [];
+  await page.exposeFunction("noteGoal", (topic, x, y) => goals.push([topic, x, y]));
+  await page.evaluate(() => {
+    for (const topic of ["/goal_point", "/goal_pose"]) {
+      navette.connection.subscribe(topic, { every: true }, ({ value }) => {
+        const { x, y } = value.point ?? value.pose.position;
+        noteGoal(topic, x, y);
+      });
+    }
+  });
+  const answer = () => page.textContent("#answer");
+  await page.mouse.click(...await near(1.5));
+  await until(() => /sent/.test(document.querySelector("#answer").textContent));
+  seen.clicked = await answer();
+  await page.getByRole("button", { name: /goal pose|heading/i }).first().click();
+  const [hx, hy] = await near(1.0);
+  await page.mouse.move(hx, hy);
+  await page.mouse.down();
+  await page.mouse.move(hx, hy - 60, { steps: 5 });
+  await page.mouse.up();
+  await until((before) => document.querySelector("#answer").textContent !== before, seen.clicked);
+  seen.withHeading = await answer();
+  await until(() => navette.connection.statistics("/planner/status") !== null);
+  seen.goals = goals.map(([topic]) => topic);
+
+  // Panels display data.
+  await open("log");
+  await page.locator(".log-list li").first().waitFor({ timeout: 90_000 });
+  seen.log = await page.textContent(".log-list li:first-child .log-node");
+  await open("plot", { paths: ["/odom/filtered.twist.twist.linear.x"] });
+  await until(() => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
+  await open("image", { topic: "/camera" });
+  await until(() => /\d+ × \d+ · \d/.test(document.querySelector(".image-facts")?.textContent ?? ""));
+  seen.image = await page.textContent(".image-facts");
+  await open("raw", { topic: "/odom/filtered" });
+  await until(() => document.querySelectorAll(".raw-tree .raw-row").length > 4);
+  seen.raw = await page.textContent(".raw-facts");
+  await open("graph");
+  await until(() => document.querySelectorAll(".graph-node").length > 5);
+  await open("diagnostics");
+  await until(() => document.querySelectorAll(".diagnostics-nodes li").length > 5);
+  await open("tree");
+  await page.locator(".tree-lines li").first().waitFor();
+  await open("frames");
+  await page.getByText("base_link", { exact: false }).first().waitFor();
+
+  // A parameter acts.
+  await open("parameters");
+  await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
+  const slider = page.locator('input[aria-label="/control.cruise_speed_mps, slider"]');
+  await slider.fill("0.6");
+  await until(() => navette.connection.parameters.get("/control.cruise_speed_mps").value === 0.6);
+
+  // Run control: paused time stands, a step advances it, continuing continues.
+  await open("run");
+  const now = () => page.evaluate(() => Number(navette.connection.nowNs));
+  await page.getByRole("button", { name: "Pause", exact: true }).last().click();
+  await page.getByRole("button", { name: "Continue", exact: true }).last().waitFor({ timeout: 60_000 });
+  await page.waitForTimeout(300);
+  const paused = await now();
+  await page.waitForTimeout(500);
+  seen.whilePaused = (await now()) - paused;
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await until((before) => Number(navette.connection.nowNs) > before, paused);
+  await page.waitForTimeout(300);
+  seen.step = (await now()) - paused;
+  await page.getByRole("button", { name: "Continue", exact: true }).last().click();
+  await until((before) => Number(navette.connection.nowNs) > before + 5e8, paused);
+
+  seen.axe.panels = await serious(page);
+  await page.screenshot({ path: `${folder}/desktop-light.png` });
+
+  // Sizes and themes.
+  for (const [name, width, height, colorScheme] of [["desktop-dark", 1440, 900, "dark"], ["tablet-light", 820, 1180, "light"], ["phone-dark", 360, 800, "dark"], ["phone-light", 800, 360, "light"]]) {
+    const other = await newPage({ viewport: { width, height }, colorScheme, hasTouch: width < 900 });
+    await other.waitForFunction(() => navette.transforms.frames.includes("base_link"), null, { timeout: 60_000 });
+    await other.waitForTimeout(1500);
+    seen.axe[name] = await serious(other);
+    seen[name] = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]);
+    await other.screenshot({ path: `${folder}/${name}.png` });
+    await other.context().close();
+  }
+
+  // The server ends and returns.
+  const problemsBefore = seen.problems.length;
+  console.log("end");
+  await until(() => navette.connection.status.state === "lost");
+  seen.lost = await page.textContent("#headline");
+  await input.next();
+  await until(() => navette.connection.status.state === "live");
+  await until(() => navette.connection.topics.has("/map"));
+  await until(() => navette.connection.statistics("/tf")?.count > 0);
+  seen.problems = seen.problems.slice(0, problemsBefore); // refused connections meanwhile
+  console.log(JSON.stringify(seen));
+} finally {
+  await browser.close();
+}
