@@ -5,20 +5,18 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fleet import until
 from test_viewer_javascript import JAVASCRIPT
 
 from free_ports import free_port
 
 pytestmark = pytest.mark.long
-
-PATIENCE_S = 120.0
 
 
 class Demo:
@@ -55,13 +53,6 @@ class Demo:
                 return bool(json.load(answer)["topics"])
         except (urllib.error.URLError, ConnectionError, TimeoutError):
             return False
-
-
-def until(check: Callable[[], bool], what: str) -> None:
-    end_s = time.monotonic() + PATIENCE_S
-    while not check():
-        assert time.monotonic() < end_s, f"waited {PATIENCE_S:g} s for {what}"
-        time.sleep(0.2)
 
 
 @pytest.fixture
