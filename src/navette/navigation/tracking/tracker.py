@@ -26,6 +26,9 @@ _LEAST_RETURNS = 3
 _LEAST_CHANGED = 3
 # Relative difference of radii up to which two clusters are the same obstacle.
 _SAME_RADIUS = 0.3
+# Returns this near to the predicted circle of a track belong to it, where those of
+# several obstacles are joined.
+_ON_CIRCLE_M, _LEAST_CIRCLES = 0.15, 2
 # Beams past the predicted centre that show that an obstacle is not there any more.
 _PASSED = 3
 
@@ -138,21 +141,47 @@ class MovingObstacles:
         clusters = []
         runs = segment(placed.points, placed.valid, away, self.params.gap_m)
         for first, stop in runs[runs[:, 1] - runs[:, 0] >= _LEAST_RETURNS].tolist():
-            new = int(np.count_nonzero(changed[first:stop]))
-            points = placed.points[first:stop][placed.valid[first:stop]]
-            if len(points) < _LEAST_RETURNS:
-                continue
-            if extent(points) > largest:
-                # An obstacle in front of a wall: only what is new of it.
-                if new >= _LEAST_RETURNS:
-                    clusters += self._new_parts(placed, changed, first, stop)
-                continue
-            left = _count_near(vanished, points.mean(axis=0), largest / 2)
-            evidence = new if new >= _LEAST_CHANGED else 0
-            evidence += left if left > _LEAST_CHANGED else 0
-            if evidence or self._is_near_track(points):
-                clusters.append(self._measure(placed, points, evidence))
+            returns = first + np.flatnonzero(placed.valid[first:stop])
+            for part in self._divided(placed.points, returns):
+                points = placed.points[part]
+                if len(points) < _LEAST_RETURNS:
+                    continue
+                new = int(np.count_nonzero(changed[part]))
+                if extent(points) > largest:
+                    # An obstacle in front of a wall: only what is new of it.
+                    if new >= _LEAST_RETURNS:
+                        clusters += self._new_parts(placed, changed, first, stop)
+                    continue
+                left = _count_near(vanished, points.mean(axis=0), largest / 2)
+                evidence = new if new >= _LEAST_CHANGED else 0
+                evidence += left if left > _LEAST_CHANGED else 0
+                if evidence or self._is_near_track(points):
+                    clusters.append(self._measure(placed, points, evidence))
         return clusters
+
+    def _divided(
+        self, points: NDArray[np.float64], returns: NDArray[np.int64]
+    ) -> list[NDArray[np.int64]]:
+        """Return the indices of a run's returns, divided between known circles.
+
+        Obstacles that meet, or pass before each other, have one run of returns. Each
+        return belongs to the predicted circle that it lies on.
+        """
+        round_ = [t for t in self._tracks if t.is_moving and t.is_round]
+        if len(round_) < _LEAST_CIRCLES or not len(returns):
+            return [returns]
+        circles = np.array([(t.x, t.y, t.radius_m) for t in round_])
+        arms = points[returns, None, :] - circles[:, :2]
+        off = np.abs(np.hypot(arms[..., 0], arms[..., 1]) - circles[:, 2])
+        nearest = off.argmin(axis=1)
+        own = np.bincount(
+            nearest[off.min(axis=1) <= _ON_CIRCLE_M], minlength=len(off[0])
+        )
+        owners = np.flatnonzero(own >= _LEAST_RETURNS)
+        if len(owners) < _LEAST_CIRCLES:
+            return [returns]
+        nearest = owners[off[:, owners].argmin(axis=1)]
+        return [returns[nearest == owner] for owner in owners]
 
     def _new_parts(
         self, placed: PlacedScan, changed: NDArray[np.bool_], first: int, stop: int

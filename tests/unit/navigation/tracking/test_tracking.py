@@ -62,6 +62,24 @@ def test_position_and_velocity_of_a_cylinder(vx: float, vy: float) -> None:
     assert len(numbers) == 1  # one track
 
 
+@pytest.mark.parametrize("gap_m", [-0.4, -0.2, 0.05])
+def test_cylinders_that_pass_each_other_keep_their_tracks(gap_m: float) -> None:
+    """The two have one run of returns while they pass, or overlap."""
+    apart = (0.6 + gap_m) / 2
+    world = World().add_walls((16, 16))
+    world.add_actor([(0, 4 - apart, -2.0), (4, 4 - apart, 2.0)], 0.3, loop=False)
+    world.add_actor([(0, 4 + apart, 2.5), (4, 4 + apart, -1.5)], 0.3, loop=False)
+    found = _track(_simulator(world), 3.6)
+    for i in range(30, 72):
+        seconds = (i + 1) * 0.05
+        truth = ((4 - apart, seconds - 2.0, 1.0), (4 + apart, 2.5 - seconds, -1.0))
+        assert len(found[i]) == 2, f"at {seconds:.2f} s"
+        for x, y, vy in truth:
+            near = min(found[i], key=lambda t, x=x, y=y: math.hypot(t.x - x, t.y - y))
+            assert math.hypot(near.x - x, near.y - y) < 0.15, f"at {seconds:.2f} s"
+            assert near.vy == pytest.approx(vy, abs=0.35), f"at {seconds:.2f} s"
+
+
 def test_nothing_moves_in_a_still_world_with_noise_seen_from_a_moving_robot() -> None:
     world = (
         World().add_walls((16, 16)).add_box((3, 2), (0.5, 0.5)).add_box((4, -1), (1, 1))
