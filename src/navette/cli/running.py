@@ -27,6 +27,10 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
     """
     screen = StatusScreen(options)
     with screen.starting():
+        # Imported here: it imports Numba.
+        from navette.cli.preparing import prepare
+
+        prepare(options, screen.show_line, screen.show_progress)
         simulation = make_simulation(options, screen.on_change)
     try:
         return _drive(simulation, screen, as_json=as_json)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console, RenderableType
 from rich.live import Live
+from rich.status import Status
 from rich.table import Table
 from rich.text import Text
 
@@ -13,6 +14,7 @@ from navette.msgs.topics import CMD_VEL_NAV
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.pose_error import PoseError
 from navette.navigation.stack.summary import RunSummary
+from navette.runtime import Stopwatch
 from navette.runtime.stage.commander import Commander
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from navette.navigation.stack.simulation import Simulation
 
 _REFRESH_HZ = 8
+_LINES_S = 2.0  # between lines of progress that are not on a terminal
 _WIDTH = 24
 _BESIDE_BAR = 60  # columns that the figures beside the bar may take
 _LONG_M = 1e6  # coordinates from here on are shown with an exponent
@@ -36,15 +39,28 @@ class StatusScreen:
         self._longest_m: dict[str, float] = {}
         self._reported = ""
         self._commander = Commander()
+        self._starting: Status | None = None
+        self._line_due = Stopwatch()
 
     @contextmanager
     def starting(self) -> Iterator[None]:
-        """Show that nodes are created and, at the first start, kernels compiled."""
-        with self._console.status(
-            "starting (the first start compiles the kernels, which takes seconds)",
-            spinner="dots",
-        ):
+        """Show that nodes are created."""
+        with self._console.status("starting", spinner="dots") as self._starting:
             yield
+        self._starting = None
+
+    def show_line(self, text: str) -> None:
+        """Print what is being done before the run."""
+        self._console.print(Text(text), soft_wrap=True)
+
+    def show_progress(self, text: str) -> None:
+        """Show how far that is: beside the spinner, or in lines every few seconds."""
+        if self._console.is_terminal:
+            if self._starting is not None:
+                self._starting.update(text)
+        elif self._line_due.elapsed_s >= _LINES_S:
+            self._line_due = Stopwatch()
+            self.show_line(text)
 
     @contextmanager
     def watching(self, simulation: "Simulation") -> Iterator[None]:

@@ -233,3 +233,44 @@ def _describe_code(code: CodeType) -> Iterator[str]:
             yield from _describe_code(constant)
         else:
             yield repr(constant)
+
+
+def stored_kernels() -> int:
+    """Return the number of kernels whose machine code is stored."""
+    folder = _folder()
+    return 0 if folder is None else sum(1 for _ in folder.glob(f"*{_SUFFIX}"))
+
+
+def are_prepared(version: str) -> bool:
+    """Return whether :func:`note_prepared` was called for a version of Navette.
+
+    True also where nothing can be stored.
+    """
+    mark = _mark(version)
+    if mark is None:
+        return True
+    try:
+        os.utime(mark)  # marks the file as in use
+    except OSError:
+        return False
+    return True
+
+
+def note_prepared(version: str) -> None:
+    """Note that the kernels of a version have been compiled and stored."""
+    mark = _mark(version)
+    if mark is not None:
+        try:
+            mark.touch()
+        except OSError as error:
+            _log_once(f"cannot note the compiled kernels: {error.strerror}")
+
+
+def _mark(version: str) -> Path | None:
+    """Return the file that exists if the kernels of a version are stored."""
+    folder = _folder()
+    config: Any = numba.config
+    if folder is None or config.DISABLE_JIT:
+        return None
+    python = sys.implementation.cache_tag
+    return folder / f"navette-{version}-numba-{numba.__version__}-{python}.prepared"

@@ -19,6 +19,7 @@ from navette.navigation.planning.traversal import (
 # Share of the full clearance cost that applies at once where the body can no longer
 # turn in place: a step keeps paths out of there, a slope alone would not.
 _STEP = 0.2
+_STRIP = 512  # rows whose distances are computed at once
 # Distance step of the cost table.
 _LEVEL_M = 0.004
 
@@ -107,16 +108,17 @@ class CellCosts:
         Returns the cells whose distance may have changed.
         """
         reach = int(np.ceil(self.reach_m / resolution))
-        shape = obstacles.shape
-        near, around = window.grown(reach, shape), window.grown(2 * reach, shape)
-        if around == CellWindow.whole(shape):
-            distance_m[:] = distance_field(obstacles, resolution, self.reach_m)
-            return around
-        field = distance_field(
-            np.ascontiguousarray(obstacles[around.slices]), resolution, self.reach_m
-        )
-        inner = near.shifted(-around.first_row, -around.first_column)
-        distance_m[near.slices] = field[inner.slices]
+        near = window.grown(reach, obstacles.shape)
+        # In strips: their work arrays are small.
+        for first in range(near.first_row, near.last_row, _STRIP):
+            last = min(first + _STRIP, near.last_row)
+            strip = near._replace(first_row=first, last_row=last)
+            around = strip.grown(reach, obstacles.shape)
+            field = distance_field(
+                np.ascontiguousarray(obstacles[around.slices]), resolution, self.reach_m
+            )
+            inner = strip.shifted(-around.first_row, -around.first_column)
+            distance_m[strip.slices] = field[inner.slices]
         return near
 
 

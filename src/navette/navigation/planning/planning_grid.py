@@ -198,7 +198,7 @@ def planning_grid(
             f"occupancy grid of shape {occupancy.shape}: expected {spec.shape}"
         )
     costs = CellCosts.of(params, body.closed_m, body.circumscribed_m, spec.resolution)
-    obstacles = (occupancy >= params.lethal_cost).astype(np.uint8)
+    obstacles = (occupancy >= params.lethal_cost).view(np.uint8)
     distance_m = np.empty(spec.shape, np.float32)
     cost = np.zeros(spec.shape, np.uint8)
     whole = costs.measure(

@@ -1,0 +1,64 @@
+"""Compile a part of the kernels that a drive needs, in a process of its own.
+
+    python -m navette.navigation.stack.kernel_part PART
+
+The machine code is stored; the program that starts this process then loads it. PART is
+``planning``, or ``driving`` for all the rest and a short drive.
+"""
+
+import sys
+from collections.abc import Callable
+
+from navette.navigation.stack.options import RunOptions
+
+PARTS = ("planning", "driving")
+# Simulated time after which the robot moves and every node has been called.
+_DRIVE_S = 3.0
+
+
+def compile_planning() -> None:
+    """Compile the kernels of the planner."""
+    _make("planner")
+
+
+def compile_driving() -> None:
+    """Compile the kernels of the other nodes, then drive."""
+    for name in ("costmap", "map_memory", "tracking", "control", "behaviors"):
+        _make(name)
+    from navette.navigation.stack import demo_goals
+    from navette.navigation.stack.simulation import Simulation
+
+    simulation = Simulation(
+        RunOptions(
+            world="arena",
+            goals=demo_goals(),
+            headless=True,
+            speed=float("inf"),
+            max_time_s=_DRIVE_S,
+        )
+    )
+    try:
+        simulation.run()
+    finally:
+        simulation.close()
+
+
+def _make(name: str) -> None:
+    """Create a node, which compiles its kernels, and destroy it."""
+    from navette.navigation.stack.stack import node_class
+    from navette.runtime import Context, LoggingSeverity, VirtualClock
+
+    context = Context(clock=VirtualClock())
+    context.init(args=[], console_level=LoggingSeverity.FATAL)
+    try:
+        node_class(name)(context=context)
+    finally:
+        context.try_shutdown()
+
+
+_COMPILE: dict[str, Callable[[], None]] = dict(
+    zip(PARTS, (compile_planning, compile_driving), strict=True)
+)
+
+if __name__ == "__main__":
+    _COMPILE[sys.argv[1]]()
