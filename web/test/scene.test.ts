@@ -1,0 +1,174 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import { RobotState } from "../src/robot/robot_state";
+import { DisplayList } from "../src/scene/display_list";
+import type { Surroundings } from "../src/scene/display";
+import { knownBox } from "../src/scene/displays/grid_map";
+import { readStl } from "../src/scene/displays/meshes";
+import { readUrdf } from "../src/scene/displays/models";
+import { readCloud } from "../src/scene/displays/points";
+import { covarianceEllipse } from "../src/scene/displays/poses";
+import { convexHull, isInside } from "../src/scene/hull";
+import type { OccupancyGrid, PointCloud2 } from "../src/scene/messages";
+import { pick } from "../src/scene/picking";
+import { rgba } from "../src/scene/primitives";
+import { unionOf, Viewing } from "../src/scene/viewing";
+import { Theme } from "../src/theme/theme";
+import { IDENTITY } from "../src/transforms/transform";
+import { TransformTree } from "../src/transforms/transform_tree";
+import { FakeConnection } from "./fake_connection";
+
+const header = { frame_id: "map", stamp: { sec: 1, nanosec: 0 } };
+const pose = { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+const grid = (width: number, data: number[]): OccupancyGrid => ({
+  header,
+  info: { resolution: 0.5, width, height: data.length / width, origin: { ...pose, position: { x: -1, y: 2, z: 0 } } },
+  data,
+});
+const scan = { header: { ...header, frame_id: "lidar" }, angle_min: 0, angle_increment: Math.PI / 2, range_min: 0.1, range_max: 10, ranges: [1, 2, Infinity] };
+const above = (x: number, y: number): Parameters<typeof pick>[1] => ({ origin: [x, y, 100], direction: [0, 0, -1], metresPerPx: 0.01 });
+
+describe("displays", () => {
+  let connection: FakeConnection;
+  let transforms: TransformTree;
+  let displays: DisplayList;
+  const around = { fixedFrame: "map", isThreeDimensional: false, invalidate: (): void => undefined };
+  const display = (id: string): DisplayList["all"][number] => displays.all.find((each) => each.id === id)!;
+
+  beforeEach(() => {
+    connection = new FakeConnection();
+    transforms = new TransformTree();
+    const surroundings: Surroundings = { ...around, connection, transforms, theme: new Theme() };
+    displays = new DisplayList(surroundings, new RobotState(connection, transforms));
+  });
+
+  it("appear with their topics in a stable order, and leave with them", () => {
+    connection.addTopic("/path", "nav_msgs/msg/Path");
+    connection.addTopic("/map", "nav_msgs/msg/OccupancyGrid");
+    connection.addTopic("/chatter", "std_msgs/msg/String");
+    const ids = (): string[] => displays.all.map(({ id }) => id).filter((id) => id.startsWith("/"));
+    expect(ids()).toEqual(["/map", "/path"]);
+    connection.topics.delete("/map");
+    connection.emit("topics", []);
+    expect(ids()).toEqual(["/path"]);
+  });
+
+  it("subscribe only while they are shown", () => {
+    connection.addTopic("/points", "sensor_msgs/msg/PointCloud2");
+    expect(connection.isSubscribed("/points")).toBe(false);
+    displays.change(display("/points"), { isVisible: true });
+    expect(connection.isSubscribed("/points")).toBe(true);
+    displays.change(display("/points"), { isVisible: false });
+    expect(connection.isSubscribed("/points")).toBe(false);
+  });
+
+  it("state why they are empty", () => {
+    connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
+    expect(display("/lidar").status()).toEqual({ level: "empty", text: "no messages yet" });
+    connection.send("/lidar", scan);
+    expect(display("/lidar").status()).toEqual({ level: "error", text: "no transform from lidar to map" });
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    expect(display("/lidar").status()).toEqual({ level: "ok", text: "2 of 3 rays hit" });
+    connection.topics.set("/lidar", { ...connection.topics.get("/lidar")!, type: "std_msgs/msg/String" });
+    expect(display("/lidar").status().text).toBe("wrong type: std_msgs/msg/String");
+  });
+
+  it("keep messages where they were for their decay", () => {
+    connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    displays.change(display("/lidar"), { decayS: 10 });
+    for (let index = 0; index < 3; index++) {
+      connection.send("/lidar", scan);
+      display("/lidar").parts();
+    }
+    expect(display("/lidar").parts()).toHaveLength(3);
+  });
+
+  it("remember their look while the topic is away", () => {
+    connection.addTopic("/map", "nav_msgs/msg/OccupancyGrid");
+    displays.change(display("/map"), { opacity: 0.3 });
+    const topic = connection.topics.get("/map")!;
+    connection.topics.delete("/map");
+    connection.emit("topics", []);
+    connection.addTopic("/map", topic.type);
+    expect(display("/map").look.opacity).toBe(0.3);
+  });
+
+  it("pick the topmost first", () => {
+    connection.addTopic("/map", "nav_msgs/msg/OccupancyGrid");
+    connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    connection.send("/map", grid(4, [0, 0, 100, -1]));
+    connection.send("/lidar", scan);
+    const items = displays.all.flatMap((each) => each.parts().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 })));
+    const [hit] = pick(items, above(0.01, 2));
+    expect(hit?.primitive.kind).toBe("points");
+    const cell = pick(items, above(0.25, 2.25)).find(({ primitive }) => primitive.kind === "raster");
+    expect(cell?.item.part.about?.(cell.primitive, cell.hit)).toContainEqual(["value", "100 (occupied)"]);
+    expect(pick(items, above(0.75, 2.25)).some(({ primitive }) => primitive.kind === "raster")).toBe(false);
+  });
+});
+
+describe("geometry", () => {
+  it("fits known cells only", () => {
+    expect(knownBox(grid(3, [-1, -1, -1, -1, 0, 100]))).toEqual([-0.5, 2.5, 0.5, 3]);
+    expect(knownBox(grid(2, [-1, -1]))).toBeNull();
+    expect(unionOf([[0, 0, 1, 1], [-2, 0.5, 0, 4]])).toEqual([-2, 0, 1, 4]);
+  });
+
+  it("makes hulls", () => {
+    const hull = convexHull([[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [1, 0]]);
+    expect(hull).toHaveLength(4);
+    expect(isInside(hull, [1.5, 1.5])).toBe(true);
+    expect(isInside(hull, [2.5, 1])).toBe(false);
+  });
+
+  it("draws two deviations", () => {
+    const covariance = Array.from({ length: 36 }, (_, index) => (index === 0 ? 4 : index === 7 ? 1 : 0));
+    const ellipse = covarianceEllipse(covariance, IDENTITY)!;
+    expect(Math.max(...ellipse)).toBeCloseTo(4);
+    expect(covarianceEllipse(Array.from({ length: 36 }, () => 0), IDENTITY)).toBeNull();
+  });
+
+  it("keeps the place under the pointer while zooming, and the robot while following", () => {
+    const viewing = new Viewing(() => undefined);
+    viewing.setMode("free");
+    viewing.zoom(2, [3, 0]);
+    expect(viewing.viewpoint.centre).toEqual([1.5, 0]);
+    viewing.setMode("follow");
+    viewing.zoom(2, [9, 9]);
+    expect(viewing.viewpoint.centre).toEqual([1.5, 0]);
+    viewing.pan(1, 1);
+    expect(viewing.mode).toBe("free");
+  });
+});
+
+describe("files and messages", () => {
+  it("reads a URDF", () => {
+    const visuals = readUrdf(
+      '<robot><material name="red"><color rgba="1 0 0 1"/></material><link name="base"><visual><origin xyz="1 0 0" rpy="0 0 1.5708"/>' +
+        '<geometry><box size="1 2 3"/></geometry><material name="red"/></visual></link><link name="wheel"><visual><geometry><cylinder radius="0.1" length="0.05"/></geometry></visual></link></robot>',
+    );
+    expect(visuals.map(({ link, shape, size }) => [link, shape, size])).toEqual([["base", "box", [1, 2, 3]], ["wheel", "cylinder", [0.2, 0.2, 0.05]]]);
+    expect(rgba(visuals[0]!.colour!)).toEqual([255, 0, 0, 1]);
+  });
+
+  it("reads text and binary STL", () => {
+    const text = new TextEncoder().encode("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid");
+    expect([...readStl(text.buffer).positions]).toEqual([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+    const binary = new DataView(new ArrayBuffer(134));
+    binary.setUint32(80, 1, true);
+    binary.setFloat32(96, 2.5, true);
+    expect(readStl(binary.buffer).positions[0]).toBe(2.5);
+  });
+
+  it("reads clouds of other layouts, and leaves out what is not finite", () => {
+    const data = new DataView(new ArrayBuffer(3 * 20));
+    [[1, 2, 3], [NaN, 0, 0], [4, 5, 6]].forEach((point, row) => point.forEach((value, axis) => data.setFloat32(20 * row + 4 + 4 * axis, value, false)));
+    const cloud: PointCloud2 = {
+      header, height: 1, width: 3, is_bigendian: true, point_step: 20, row_step: 60, data: new Uint8Array(data.buffer),
+      fields: ["x", "y", "z"].map((name, axis) => ({ name, offset: 4 + 4 * axis, datatype: 7, count: 1 })),
+    };
+    expect([...readCloud(cloud, "height").positions]).toEqual([1, 2, 3, 4, 5, 6]);
+    expect(readCloud({ ...cloud, fields: [] }, "height").why).toMatch(/no fields/);
+  });
+});
