@@ -74,7 +74,10 @@ def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
     """Point links that leave docs/ at the pages of the site."""
     source = page.file.src_uri
     origin = {target: path for path, target in TEXTS.items()}.get(source)
-    folder = posixpath.dirname(origin if origin else f"docs/{source}")
+    if origin is None:
+        folder = posixpath.dirname(f"docs/{source}")
+    else:
+        folder = origin if (ROOT / origin).is_dir() else posixpath.dirname(origin)
 
     def change(link: "re.Match[str]") -> str:
         if "://" in link[2]:

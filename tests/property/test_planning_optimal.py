@@ -1,20 +1,16 @@
 """On any small grid the searches find the cheapest valid path."""
 
-import heapq
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from cheapest_path import cheapest
 from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.string_pulling import centers, line_cost, pull
 from navette.navigation.planning.traversal import (
-    DIAGONAL,
     LETHAL,
-    MAX_PASSABLE_COST,
-    STRAIGHT,
     EdgeTable,
     steps_cost,
 )
@@ -28,35 +24,13 @@ WEIGHTS = st.sampled_from([0.0, 0.7, 3.0, 40.0])
 ASTAR = AStar()
 
 
-def brute_force(cost: np.ndarray, start: Cell, goal: Cell, weight: float) -> int | None:
-    """Dijkstra with a heap over a dict of edges."""
-    free = {tuple(cell) for cell in np.argwhere(cost < LETHAL).tolist()}
-    best, waiting = {start: 0}, [(0, start)]
-    if not {start, goal} <= free:
-        return None
-    while waiting:
-        g, (row, column) = heapq.heappop(waiting)
-        if (row, column) == goal:
-            return g
-        for dr, dc in ((a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if a or b):
-            to = (row + dr, column + dc)
-            if not {to, (row + dr, column), (row, column + dc)} <= free:
-                continue
-            unit = DIAGONAL if dr and dc else STRAIGHT
-            there = g + round(unit * (1 + weight * int(cost[to]) / MAX_PASSABLE_COST))
-            if there < best.get(to, 1 << 60):
-                best[to] = there
-                heapq.heappush(waiting, (there, to))
-    return None
-
-
 @given(GRIDS, st.data(), WEIGHTS)
 def test_astar_and_dijkstra_find_the_cheapest_path(
     cost: np.ndarray, data: st.DataObject, weight: float
 ) -> None:
     start, goal = (ends(data, cost.shape) for _ in range(2))
     table = EdgeTable(weight=weight)
-    expected = brute_force(cost, start, goal, weight)
+    expected = cheapest(cost, start, goal, table)
     for search in (ASTAR.search, dijkstra.search):
         found = search(cost, start, goal, table=table)
         if expected is None:
@@ -74,11 +48,11 @@ def test_breadth_first_finds_the_fewest_moves(
 ) -> None:
     start, goal = (ends(data, cost.shape) for _ in range(2))
     found = breadth_first.search(cost, start, goal)
-    cheapest = ASTAR.search(cost, start, goal)
-    assert (found is None) == (cheapest is None)
-    if found is not None and cheapest is not None:
+    best = ASTAR.search(cost, start, goal)
+    assert (found is None) == (best is None)
+    if found is not None and best is not None:
         check_legal(found[0], cost, start, goal)
-        assert len(found[0]) <= len(cheapest[0])
+        assert len(found[0]) <= len(best[0])
 
 
 @given(GRIDS, st.data(), WEIGHTS)

@@ -54,19 +54,26 @@ LEAVES = {
 }
 
 
+def held_robot(
+    simulate: MakeSimulation, impatient: Path, *, until_s: float
+) -> Simulation:
+    """Return a Jackal in a room with a goal, whose wheels do not turn for a while."""
+    simulation = simulate(
+        scene=World("room").add_walls((10.0, 10.0)).scene(),
+        robot="jackal",
+        goals=((-3.0, 0.0),),
+        params_files=(impatient,),
+        max_time_s=max(60.0, until_s),
+    )
+    hold_wheels(simulation, until_s=until_s)
+    return simulation
+
+
 @pytest.mark.slow
 def test_a_stuck_robot_recovers_and_arrives(
     simulate: MakeSimulation, impatient: Path
 ) -> None:
-    room = World("room").add_walls((10.0, 10.0)).scene()
-    simulation = simulate(
-        scene=room,
-        robot="jackal",
-        goals=((-3.0, 0.0),),
-        params_files=(impatient,),
-        max_time_s=60.0,
-    )
-    hold_wheels(simulation, until_s=9.0)
+    simulation = held_robot(simulate, impatient, until_s=9.0)
     names = started(simulation)
     simulation.run()
     (outcome,) = simulation.summary().goals
@@ -80,15 +87,7 @@ def test_a_stuck_robot_recovers_and_arrives(
 def test_a_robot_that_never_moves_gives_up_with_the_reason(
     simulate: MakeSimulation, impatient: Path
 ) -> None:
-    room = World("room").add_walls((10.0, 10.0)).scene()
-    simulation = simulate(
-        scene=room,
-        robot="jackal",
-        goals=((-3.0, 0.0),),
-        params_files=(impatient,),
-        max_time_s=120.0,
-    )
-    hold_wheels(simulation, until_s=120.0)
+    simulation = held_robot(simulate, impatient, until_s=120.0)
     names = started(simulation)
     simulation.run()
     (outcome,) = simulation.summary().goals

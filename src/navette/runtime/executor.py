@@ -273,7 +273,8 @@ class MultiThreadedExecutor(Executor):
 
     Args:
         num_threads: number of threads; None: the number of processor cores, at least 2.
-        context, clock: as for :class:`Executor`.
+        context: as for :class:`Executor`.
+        clock: as for :class:`Executor`.
 
     Raises:
         ValueError: ``num_threads`` is not positive.

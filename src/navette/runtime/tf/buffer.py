@@ -61,7 +61,9 @@ class Buffer(MessageCore, BufferInterface):
         """Return target_T_source at ``time``; wait up to ``timeout`` and run events.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException
+            LookupException: a frame is unknown.
+            ConnectivityException: the frames are not connected.
+            ExtrapolationException: no data at the time.
         """
         query = (target_frame, source_frame, time)
         self._wait(lambda: self.can_transform_core(*query)[0], timeout)

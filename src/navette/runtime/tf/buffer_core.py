@@ -113,7 +113,9 @@ class BufferCore:
         """Return target_T_source and its stamp; 0 stands for the newest common time.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException
+            LookupException: a frame is unknown.
+            ConnectivityException: the frames are not connected.
+            ExtrapolationException: no data at the time.
         """
         if stamp_ns != 0:
             return self._found(target, source, stamp_ns)

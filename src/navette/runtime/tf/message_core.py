@@ -42,7 +42,9 @@ class MessageCore:
         """Return target_T_source at ``time``.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException
+            LookupException: a frame is unknown.
+            ConnectivityException: the frames are not connected.
+            ExtrapolationException: no data at the time.
         """
         target_T_source, stamp_ns = self.core.lookup(
             target_frame, source_frame, nanoseconds(time)

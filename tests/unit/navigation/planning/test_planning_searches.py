@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from planning_worlds import cheapest
 
+from cheapest_path import cheapest
 from navette.errors import InvalidValueError
 from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
