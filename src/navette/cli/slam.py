@@ -1,5 +1,6 @@
 """``navette slam``: build a map from a recording."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -44,6 +45,25 @@ class SlamInput:
             " of /tf, else a topic.",
         ),
     ] = ""
+    known: Annotated[
+        Path | None,
+        Option(
+            "--continue",
+            metavar="FILE.slam",
+            help="Continue this map, written by --save.",
+        ),
+    ] = None
+    localize: Annotated[
+        bool, Option("--localize", help="Localise in --continue; the map stays.")
+    ] = False
+    start: Annotated[
+        str,
+        Option(
+            metavar="X Y YAW_DEG",
+            help="Where in --continue the recording begins, roughly. Default: the whole"
+            " map is searched.",
+        ),
+    ] = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +83,13 @@ class SlamOutput:
         Option(
             metavar="OUT.tum",
             help="Write the pose at each scan: lines of time, x, y, z, and quaternion.",
+        ),
+    ] = None
+    save: Annotated[
+        Path | None,
+        Option(
+            metavar="OUT.slam",
+            help="Write scans and pose graph, for --continue and the node slam.",
         ),
     ] = None
     overwrite: Annotated[
@@ -92,7 +119,7 @@ def slam(options: SlamOptions) -> None:
     Runs as fast as the machine allows. The same recording gives the same files.
     """
     from navette.bags import open_bag
-    from navette.navigation.slam import Slam
+    from navette.navigation.slam.graph_file import write_graph
     from navette.navigation.stack.recorded_scans import RecordedScans, ScanSource
     from navette.runtime import Stopwatch
 
@@ -109,28 +136,61 @@ def slam(options: SlamOptions) -> None:
         )
         damage: list[str] = []
         scans = RecordedScans(reader, source, lambda each: damage.append(str(each)))
-        run = Slam(params)
+        run = _slam(options, params)
         used = _add_all(run, scans)
     for problem in (*damage, *scans.problems):
         note(f"left out: {problem}")
     if not used:
         fail(f"{options.source.bag}: none of the {scans.count} scans can be used")
-    run.refine()
+    if not run.trajectory():
+        fail(
+            f"{options.source.known}: no scan of the recording matches this map; give "
+            "--start X Y YAW_DEG near the place where the recording begins"
+        )
+    if run.is_mapping:
+        run.refine()
     try:
         if output.trajectory is not None:
             _write_trajectory(output.trajectory, run.trajectory())
         if output.map_file is not None:
             _write_map(output.map_file, run)
+        if output.save is not None:
+            write_graph(output.save, run.graph)
     except OSError as error:
         fail(f"cannot be written: {error}")
     _report(options, scans, run, watch.elapsed_s)
 
 
+def _slam(options: SlamOptions, params: "SlamParams") -> "Slam":
+    """Return a SLAM without a map, or with the known one."""
+    from navette.geometry import Pose2
+    from navette.navigation.slam import Slam
+    from navette.navigation.slam.graph_file import read_graph
+
+    source = options.source
+    if source.known is None:
+        if source.localize or source.start:
+            option = "--localize" if source.localize else "--start"
+            fail(f"{option} needs a known map: --continue FILE.slam")
+        return Slam(params)
+    graph = read_graph(source.known, params)
+    start = None
+    if source.start:
+        try:
+            x, y, degrees = map(float, source.start.split())
+        except ValueError:
+            fail(f"--start {source.start!r}: expected X Y YAW_DEG, such as '1.5 2 90'")
+        start = Pose2(x, y, math.radians(degrees))
+    return Slam(params, start, graph=graph, is_mapping=not source.localize)
+
+
 def _check_files(options: SlamOptions) -> None:
     output = options.output
-    if output.map_file is None and output.trajectory is None:
-        fail("nothing to write; give --map OUT, --trajectory OUT.tum or both")
-    files = [output.trajectory, _map_file(output.map_file)]
+    files = [output.trajectory, _map_file(output.map_file), output.save]
+    if not any(files):
+        fail(
+            "nothing to write; give --map OUT, --trajectory OUT.tum or --save OUT.slam"
+        )
     for each in files:
         if each is None:
             continue
@@ -219,6 +279,7 @@ def _report(
         "wall_s": wall_s,
         "map": str(_map_file(options.output.map_file) or ""),
         "trajectory": str(options.output.trajectory or ""),
+        "saved": str(options.output.save or ""),
     }
     if options.as_json:
         show_json(values)
@@ -231,7 +292,7 @@ def _report(
         f"{len(run.graph)} key scans, {run.loop_closures} loop closures, "
         f"{run.unmatched} scans without a match"
     )
-    for written in (values["map"], values["trajectory"]):
+    for written in (values["map"], values["trajectory"], values["saved"]):
         if written:
             show(f"wrote {written}")
     show(

@@ -102,3 +102,45 @@ def test_wrong_topics_are_named(bag: Path, tmp_path: Path) -> None:
     failed = run(bag, "--odometry", "/wheels", "--trajectory", lines)
     assert "'/wheels'; known: none" in failed.err
     assert not lines.exists()
+
+
+def test_a_saved_map_is_continued_and_localised_in(bag: Path, tmp_path: Path) -> None:
+    saved, again = tmp_path / "office.slam", tmp_path / "again.slam"
+    done = run(bag, "--save", saved, "--json")
+    assert done.code == 0, done
+    keys = json.loads(done.out)["key_scans"]
+
+    later = tmp_path / "later.mcap"
+    poses = loop(0.2)[20:90]
+    steps = list(drive(seed=9, poses=poses))
+    write_bag(later, iter(steps))
+    lines = tmp_path / "later.tum"
+    done = run(
+        later, "--continue", saved, "--localize", "--trajectory", lines, "--json"
+    )
+    assert done.code == 0, done
+    assert json.loads(done.out)["key_scans"] == keys
+    origin = STEPS[0].truth
+    for row, step in zip(np.loadtxt(lines), steps, strict=True):
+        truth = origin.inverse() @ step.truth
+        assert np.hypot(row[1] - truth.x, row[2] - truth.y) < 0.05
+
+    done = run(later, "--continue", saved, "--save", again, "--json")
+    assert done.code == 0, done
+    assert json.loads(done.out)["key_scans"] > keys
+    done = run(later, "--continue", again, "--localize", "--trajectory", lines,
+               "--overwrite", "--start", "3.9 0 0")  # fmt: skip
+    assert done.code == 0, done
+
+
+def test_a_damaged_map_is_refused(bag: Path, tmp_path: Path) -> None:
+    lines = tmp_path / "x.tum"
+    damaged = tmp_path / "damaged.slam"
+    damaged.write_bytes(b"no archive")
+    failed = run(bag, "--continue", damaged, "--trajectory", lines)
+    assert failed.code == 2
+    assert "no map of SLAM" in failed.err
+    failed = run(bag, "--localize", "--trajectory", lines)
+    assert "--localize needs a known map" in failed.err
+    failed = run(bag, "--continue", tmp_path / "none.slam", "--trajectory", lines)
+    assert "cannot be opened" in failed.err

@@ -29,6 +29,8 @@ _PARTNERS = 8
 _BEFORE = 3
 _REACH_M = 6.0
 _CONVERGED_M = 1e-3
+# Weight of the measurements of the run, which come from the same scans.
+_SHARE = 0.1
 
 
 def refine_all(graph: ScanGraph, params: SlamParams) -> None:
@@ -39,6 +41,10 @@ def refine_all(graph: ScanGraph, params: SlamParams) -> None:
     surfaces = [
         make_point_map(each, params.match_radius_m) if len(each) else None
         for each in clouds
+    ]
+    # The measurements of the run hold together what no pair connects.
+    known = [
+        each._replace(information=_SHARE * each.information) for each in graph.edges
     ]
     pairs: list[Pair] = []
     for turn in range(_ROUNDS):
@@ -54,7 +60,7 @@ def refine_all(graph: ScanGraph, params: SlamParams) -> None:
                 )
             )
         ]
-        poses = optimise(graph.poses, graph.motions + edges, steps=3).poses
+        poses = optimise(graph.poses, known + edges, steps=3).poses
         moved = float(np.abs(poses - graph.poses)[:, :2].max())
         graph.poses = poses
         if moved < _CONVERGED_M and turn > _WIDE:

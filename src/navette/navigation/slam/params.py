@@ -85,7 +85,7 @@ class SlamParams(FrameParams):
         above=0.0,
     )  # fmt: skip
     min_overlap: float = param(
-        0.3, "least share of points with a correspondence", at_least=0.0, at_most=1.0
+        0.2, "least share of points with a correspondence", at_least=0.0, at_most=1.0
     )
 
     # Loop closure

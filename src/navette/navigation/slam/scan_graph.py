@@ -15,6 +15,9 @@ from navette.navigation.slam.scan_points import Points, moved_points
 
 Matrix = NDArray[np.float64]
 
+# A robot looks at the place this far before it: scanners see ahead, or all around.
+_AHEAD_M = 1.0
+
 
 @dataclass(frozen=True, eq=False)
 class KeyScan:
@@ -45,15 +48,12 @@ class ScanGraph:
     Attributes:
         keys: the key scans, by node.
         edges: the measurements that the poses follow from.
-        motions: one edge from each node to an earlier one, without scan matching
-            where there was odometry; they keep the graph connected.
         sessions: first node of each session; between two the robot was switched off.
     """
 
     def __init__(self) -> None:
         self.keys: list[KeyScan] = []
         self.edges: list[GraphEdge] = []
-        self.motions: list[GraphEdge] = []
         self.sessions: list[int] = []
         self._poses = np.empty((0, 3))
         self._centers: list[NDArray[np.float64]] = []
@@ -110,6 +110,12 @@ class ScanGraph:
         x = self._poses[:, 0] + c * local[:, 0] - s * local[:, 1]
         y = self._poses[:, 1] + s * local[:, 0] + c * local[:, 1]
         return np.column_stack([x, y])
+
+    def nearest(self, pose: Pose2, count: int) -> list[int]:
+        """Return the key scans that look at what a robot at ``pose`` looks at."""
+        here = np.array(pose.apply(np.array([[_AHEAD_M, 0.0]]))[0])
+        away = np.linalg.norm(self.view_centers() - here, axis=1)
+        return sorted(np.argsort(away, kind="stable")[:count].tolist())
 
     def points(self, nodes: Iterable[int], frame: Pose2 | None = None) -> Points:
         """Return the points of key scans in the map, or in a frame given in the map."""

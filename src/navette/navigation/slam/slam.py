@@ -22,6 +22,7 @@ from navette.navigation.slam.motion import (
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.pose_graph import GraphEdge, mahalanobis
 from navette.navigation.slam.refinement import PosePrior, Refined
+from navette.navigation.slam.relocation import locate
 from navette.navigation.slam.rendering import MapScan, render
 from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
 from navette.navigation.slam.scan_points import Points, scan_points
@@ -29,6 +30,8 @@ from navette.navigation.slam.tracking import LocalMap, match
 
 # Uncertainty of the first pose, which is the map's origin.
 _START = np.diag([1e-6, 1e-6, 1e-6])
+# Of a pose that a person or a search of the whole map gives.
+_PLACED = np.diag([0.3**2, 0.3**2, 0.2**2])
 # What the errors that the scans of a local map share add to a match.
 _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
 # Overlap below which the odometry is doubted, and what another motion must gain.
@@ -73,16 +76,32 @@ class Slam:
 
     Args:
         params: noise, distances and limits.
-        start: map_T_base at the first scan.
+        start: map_T_base at the first scan, roughly if there is a map already; None:
+            the whole map is searched for it.
+        graph: a map to continue, or to localise in.
+        is_mapping: whether the map grows; otherwise the robot is localised in it.
     """
 
-    def __init__(self, params: SlamParams, start: Pose2 = HERE) -> None:
+    def __init__(
+        self,
+        params: SlamParams,
+        start: Pose2 | None = HERE,
+        *,
+        graph: ScanGraph | None = None,
+        is_mapping: bool = True,
+    ) -> None:
         self.params = params
-        self.graph = ScanGraph()
+        self.graph = ScanGraph() if graph is None else graph
+        self.is_mapping = is_mapping or not len(self.graph)
+        self._known = len(self.graph)
+        self._is_located = False
         self._finder = LoopFinder(params)
         self._motion = MotionModel(params)
         self._track: list[_Tracked] = []
-        self._pose = start
+        # The key scan that the newest poses are relative to.
+        self._anchor = 0
+        self._start = start
+        self._pose = HERE if start is None else start
         # Of the pose, relative to the key scans around it, in the map's axes.
         self._covariance: Matrix3 = _START
         # Of the newest key scan, relative to the map's origin.
@@ -120,15 +139,23 @@ class Slam:
         )
         key = KeyScan(stamp_ns, scan, base_T_sensor, points)
         motion = self._motion.step(stamp_ns, odom_T_base, yaw)
-        if not len(self.graph):
-            self._keep(key, None)
-            return self._estimate(stamp_ns, is_matched=True, is_corrected=False)
+        if not self._is_located:
+            self._begin(key, motion)
+            return self._estimate(stamp_ns, self._is_located)
         matched = self._locate(points, motion)
         is_corrected = False
         if self._is_far():
-            self._keep(key, matched)
-            is_corrected = self._close_loops()
+            if self.is_mapping:
+                self._keep(key, matched)
+                is_corrected = self._close_loops()
+            else:
+                self._rebuild_local_map()
         return self._estimate(stamp_ns, matched is not None, is_corrected)
+
+    def place(self, pose: Pose2) -> None:
+        """Place the robot in a known map, roughly; the next scan finds it exactly."""
+        if self._known:
+            self._start, self._is_located = pose, False
 
     def refine(self) -> None:
         """Optimise all poses jointly, at the end of a run or before a map is saved."""
@@ -159,6 +186,50 @@ class Slam:
             for node, key in enumerate(self.graph.keys)
         ]
 
+    def _begin(self, key: KeyScan, motion: ScanMotion) -> None:
+        """Start a map at the first scan, or find the scan in the known map."""
+        if not self._known:
+            self._is_located = True
+            self._keep(key, None)
+            return
+        start = self._start
+        if start is None:
+            start = locate(self.graph, key.points, self.params)
+        else:
+            self._start = start = start @ motion.pose
+        if start is None:
+            self._count_unmatched()
+            return
+        self._pose, self._covariance = start, _PLACED
+        self._rebuild_local_map()
+        matched = self._matched(key.points, ScanMotion(HERE, np.zeros((3, 3))))
+        if matched is None or matched.overlap < _DOUBTFUL:
+            self._count_unmatched()
+            return
+        self._is_located, self.unmatched_in_a_row = True, 0
+        self._pose = matched.pose
+        self._covariance = inverted(inverted(_PLACED) + matched.information)
+        if self.is_mapping and len(self.graph) == self._known:
+            self._join(key, matched)
+        self._rebuild_local_map()
+
+    def _join(self, key: KeyScan, matched: Refined) -> None:
+        """Connect the first key scan of a session to the known map."""
+        near = self._anchor
+        there = self.graph.pose(near)
+        node = self.graph.insert(key, self._pose, starts_session=True)
+        turn = rotation3(there.yaw)
+        information = turn.T @ (matched.information + inverted(_PLACED)) @ turn
+        edge = GraphEdge(
+            near, node, there.inverse() @ self._pose, softened(information, _FLOOR)
+        )
+        self.graph.connect([edge])
+        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
+
+    def _count_unmatched(self) -> None:
+        self.unmatched += 1
+        self.unmatched_in_a_row += 1
+
     def _locate(self, points: Points, motion: ScanMotion) -> Refined | None:
         """Match a scan and move the pose; without a match, by the motion alone."""
         before = self._pose
@@ -176,8 +247,7 @@ class Slam:
             moved_covariance(since.covariance, since.pose, moved),
         )
         if matched is None:
-            self.unmatched += 1
-            self.unmatched_in_a_row += 1
+            self._count_unmatched()
             self._pose, self._covariance = before @ moved.pose, covariance
         else:
             self.unmatched_in_a_row = 0
@@ -194,7 +264,7 @@ class Slam:
 
     def _is_far(self) -> bool:
         """Whether the robot moved enough since the newest key scan."""
-        moved = self.graph.pose(len(self.graph) - 1).inverse() @ self._pose
+        moved = self._last_key.inverse() @ self._pose
         return (
             math.hypot(moved.x, moved.y) > self.params.key_distance_m
             or abs(moved.yaw) > self.params.key_angle_rad
@@ -213,7 +283,6 @@ class Slam:
         moved = last.inverse() @ self._pose
         since = self._since_key
         information = inverted(since.covariance)
-        self.graph.motions.append(GraphEdge(node - 1, node, since.pose, information))
         if matched is not None:
             turn = rotation3(last.yaw)
             information = information + turn.T @ matched.information @ turn
@@ -239,29 +308,40 @@ class Slam:
         return not fits
 
     def _continue_from_graph(self) -> None:
-        """Place the robot relative to the newest key scan, after poses changed."""
+        """Place the robot relative to its key scan, after poses changed."""
         if self._track:
             last = self._track[-1]
-            node = len(self.graph) - 1
+            node = len(self.graph) - 1 if self.is_mapping else last.key
             self._pose = self.graph.pose(node)
             if last.key == node:
                 self._pose = self._pose @ last.key_T_base
         self._rebuild_local_map()
 
     def _rebuild_local_map(self) -> None:
-        count = len(self.graph)
-        nodes = range(max(0, count - self.params.local_scans), count)
+        """Take the newest key scans; at the start of a session, the known ones."""
+        count, size = len(self.graph), self.params.local_scans
+        new = range(max(self._known, count - size), count) if self.is_mapping else ()
+        nodes = list(new)
+        if self._known and len(nodes) < size:
+            nearest = self.graph.nearest(self._pose, 2 * size)
+            nodes = sorted({*nodes, *(k for k in nearest if k < self._known)})
+        self._anchor = nodes[-1] if new else self._nearest_of(nodes)
+        self._last_key = self.graph.pose(self._anchor) if new else self._pose
         points = self.graph.points(nodes)
         if not len(points):  # nothing was in range: no scan will match
             points = np.array([[self._pose.x, self._pose.y, 0.0, 0.0]])
         self._local = LocalMap(points, self.params)
 
+    def _nearest_of(self, nodes: list[int]) -> int:
+        return min(nodes, key=lambda k: self.graph.pose(k).distance_to(self._pose))
+
     def _estimate(
-        self, stamp_ns: int, is_matched: bool, is_corrected: bool
+        self, stamp_ns: int, is_matched: bool, is_corrected: bool = False
     ) -> SlamEstimate:
-        node = len(self.graph) - 1
+        node = self._anchor
         key_T_base = self.graph.pose(node).inverse() @ self._pose
-        self._track.append(_Tracked(stamp_ns, node, key_T_base))
+        if self._is_located:
+            self._track.append(_Tracked(stamp_ns, node, key_T_base))
         moved = ScanMotion(key_T_base, np.zeros((3, 3)))
         covariance = moved_covariance(
             self._key_covariance, self.graph.pose(node), moved
