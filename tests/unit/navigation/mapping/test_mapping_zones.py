@@ -107,3 +107,17 @@ def test_masks_of_other_nodes_are_used(graph: GraphHarness, tmp_path: Path) -> N
     )
     graph.run_for(0.2)
     assert grid_from_message(zones[-1])[0].tolist() == [[100, 0]]
+
+
+@pytest.mark.parametrize("topic", ["", "not a name", "/odom/filtered"])
+def test_a_mask_on_an_unusable_topic_is_dropped(
+    topic: str, graph: GraphHarness, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The topic is empty, not a name, or has messages of another type."""
+    graph.add(ZonesNode(context=graph.context))
+    info = graph.node.create_publisher(
+        CostmapFilterInfo, "/keepout_costmap_filter_info", LATCHED
+    )
+    info.publish(CostmapFilterInfo(filter_mask_topic=topic, multiplier=1.0))
+    graph.run_for(0.1)
+    assert "filter_mask_topic" in capsys.readouterr().err

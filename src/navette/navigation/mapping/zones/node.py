@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any, ClassVar
 
-from navette.errors import InvalidInputError, InvalidValueError
+from navette.errors import InvalidInputError, InvalidValueError, NavetteError
 from navette.geometry.map_files import read_occupancy_map
 from navette.geometry.messages import header
 from navette.msgs import topics
@@ -137,9 +137,6 @@ class ZonesNode(StageNode):
         if not (math.isfinite(info.base) and math.isfinite(info.multiplier)):
             raise InvalidInputError("not_finite", "base or multiplier")
         kind = min(info.type, _PERCENT)
-        former = self._masks.pop(kind, None)
-        if former is not None:
-            self.destroy_subscription(former)
 
         def receive(msg: OccupancyGrid) -> None:
             check_frame("filter mask", msg.header.frame_id, self.params.map_frame)
@@ -149,9 +146,16 @@ class ZonesNode(StageNode):
                 raise InvalidInputError("out_of_range", str(error)) from None
             use(FilterMask(cells, spec, info.base, info.multiplier), info)
 
-        self._masks[kind] = self.create_subscription(
-            OccupancyGrid, info.filter_mask_topic, receive, _LATCHED, shared=True
-        )
+        try:
+            mask = self.create_subscription(
+                OccupancyGrid, info.filter_mask_topic, receive, _LATCHED, shared=True
+            )
+        except NavetteError as error:  # not a name, or a topic of another type
+            text = f"filter_mask_topic: {error}"
+            raise InvalidInputError("invalid_topic", text) from None
+        former, self._masks[kind] = self._masks.get(kind), mask
+        if former is not None:
+            self.destroy_subscription(former)
 
     def _on_keepout_mask(self, mask: FilterMask, info: CostmapFilterInfo) -> None:
         cells = mask.keep_out(self.params.lethal_value)
