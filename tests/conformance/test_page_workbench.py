@@ -90,7 +90,8 @@ def test_a_person_at_the_page_of_the_demo(demo: Demo, tmp_path: Path) -> None:
     first, last = seen["known"]
     assert last > first
     assert "sent" in seen["clicked"]
-    assert {"/goal_point", "/goal_pose"} <= set(seen["goals"])
+    assert "sent" in seen["withHeading"]
+    assert seen["missed"] < 0.6
     assert seen["log"]
     assert "Odometry" in seen["raw"]
     # While paused time does not advance; a step of the panel is 100 ms.

@@ -49,44 +49,46 @@ try {
   await until(() => known.length > 3 && known.at(-1) > known[0]);
   seen.known = await page.evaluate(() => [known[0], known.at(-1)]);
 
-  // A goal by a click near the robot, reached; then one with a heading.
-  const near = (dx) => page.evaluate((offset) => {
-    const { translation: [x, y] } = navette.transforms.lookUp("map", "base_link");
+  // A goal by a click, then one with a heading, where the robot came from: it arrives.
+  const pixelOf = (place) => page.evaluate(([x, y]) => {
     const { canvas } = navette.scene, box = canvas.getBoundingClientRect();
     let best = null, least = Infinity;
-    for (let px = 150; px < canvas.clientWidth - 250; px += 6) {
-      for (let py = 90; py < canvas.clientHeight - 150; py += 6) {
+    for (let px = 80; px < canvas.clientWidth - 10; px += 4) {
+      for (let py = 60; py < canvas.clientHeight - 90; py += 4) {
         const [gx, gy] = navette.scene.groundAt(px, py);
-        const off = Math.hypot(gx - x - offset, gy - y);
+        const off = Math.hypot(gx - x, gy - y);
         if (off < least) { least = off; best = [box.left + px, box.top + py]; }
       }
     }
     return best;
-  }, dx);
-  const goals = [];
-  await page.exposeFunction("noteGoal", (topic, x, y) => goals.push([topic, x, y]));
-  await page.evaluate(() => {
-    for (const topic of ["/goal_point", "/goal_pose"]) {
-      navette.connection.subscribe(topic, { every: true }, ({ value }) => {
-        const { x, y } = value.point ?? value.pose.position;
-        noteGoal(topic, x, y);
-      });
-    }
-  });
+  }, place);
+  const pose = () => page.evaluate(() => navette.transforms.lookUp("map", "base_link").translation.slice(0, 2));
+  const start = await pose();
+  await until(([x, y]) => {
+    const [rx, ry] = navette.transforms.lookUp("map", "base_link").translation;
+    return Math.hypot(rx - x, ry - y) > 1.5;
+  }, start);
   const answer = () => page.textContent("#answer");
-  await page.mouse.click(...await near(1.5));
+  await page.mouse.click(...await pixelOf(start));
   await until(() => /sent/.test(document.querySelector("#answer").textContent));
   seen.clicked = await answer();
   await page.getByRole("button", { name: /goal pose|heading/i }).first().click();
-  const [hx, hy] = await near(1.0);
+  const [hx, hy] = await pixelOf(start);
   await page.mouse.move(hx, hy);
   await page.mouse.down();
   await page.mouse.move(hx, hy - 60, { steps: 5 });
   await page.mouse.up();
   await until((before) => document.querySelector("#answer").textContent !== before, seen.clicked);
   seen.withHeading = await answer();
-  await until(() => navette.connection.statistics("/planner/status") !== null);
-  seen.goals = goals.map(([topic]) => topic);
+  await page.evaluate(() => {
+    navette.connection.subscribe("/planner/status", {}, ({ value }) => { window.planner = value; });
+  });
+  await page.waitForFunction(([x, y]) => {
+    const values = Object.fromEntries((window.planner?.values ?? []).map(({ key, value }) => [key, value]));
+    return window.planner?.message === "reached" && Math.hypot(values.goal_x - x, values.goal_y - y) < 0.4;
+  }, start, { timeout: 240_000, polling: 200 });
+  const [x, y] = await pose();
+  seen.missed = Math.hypot(x - start[0], y - start[1]);
 
   // Panels display data.
   await open("log");
@@ -145,6 +147,30 @@ try {
     await other.screenshot({ path: `${folder}/${name}.png` });
     await other.context().close();
   }
+
+  // A thumb on the stick takes over; without it the robot stops; so it does by Stop.
+  const phone = await newPage({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const commander = (text) => phone.waitForFunction((wanted) => document.querySelector("#commander").textContent.startsWith(wanted), text, { timeout: 60_000 });
+  await phone.evaluate(() => {
+    window.commands = [];
+    navette.connection.subscribe("/cmd_vel", { every: true }, ({ value }) => commands.push(value.twist?.linear.x ?? value.linear.x));
+  });
+  await phone.locator("#drive").tap();
+  const stick = await phone.locator("#stick, .stick").first().boundingBox();
+  const touch = await phone.context().newCDPSession(phone);
+  const at = (type, dy) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x: stick.x + stick.width / 2, y: stick.y + stick.height / 2 + dy }] });
+  await at("touchStart", 0);
+  await at("touchMove", -stick.height / 2);
+  await commander("Operator");
+  await phone.waitForFunction(() => Math.max(...commands.slice(-10)) > 0.3, null, { timeout: 60_000 });
+  seen.axe.stick = await serious(phone);
+  await phone.screenshot({ path: `${folder}/stick.png` });
+  await at("touchEnd");
+  await phone.waitForFunction(() => commands.at(-1) === 0, null, { timeout: 60_000 });
+  await phone.locator("#stop").tap();
+  await commander("Emergency stop");
+  await phone.locator("#release").tap();
+  await phone.context().close();
 
   // The server ends and returns.
   const problemsBefore = seen.problems.length;
