@@ -9,6 +9,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fleet import until
@@ -64,40 +65,100 @@ def demo(tmp_path: Path) -> Iterator[Demo]:
     running.stop()
 
 
+class Person:
+    """A part of the script with the page of a demo."""
+
+    def __init__(self, part: str, demo: Demo, folder: Path) -> None:
+        chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+        node = shutil.which("node")
+        if chromium is None or node is None:
+            pytest.skip("Chromium or Node.js is not installed")
+        if not (JAVASCRIPT / "node_modules").is_dir():
+            pytest.skip(
+                "npm packages are missing: npm ci --prefix tests/conformance/js"
+            )
+        script = str(JAVASCRIPT / "workbench.mjs")
+        self._process = subprocess.Popen(
+            [node, script, part, demo.url, chromium, str(folder)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def read(self) -> str:
+        assert self._process.stdout is not None
+        return self._process.stdout.readline()
+
+    def write(self, line: str) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{line}\n")
+        self._process.stdin.flush()
+
+    def seen(self) -> dict[str, Any]:
+        """Return what the page displayed: no problem, and nothing serious for axe."""
+        seen: dict[str, Any] = json.loads(self.read())
+        assert seen["problems"] == []
+        assert {name: found for name, found in seen["axe"].items() if found} == {}
+        return seen
+
+    def close(self) -> None:
+        self._process.communicate()
+
+
+@pytest.fixture
+def person(
+    request: pytest.FixtureRequest, demo: Demo, tmp_path: Path
+) -> Iterator[Person]:
+    made = Person(request.param, demo, tmp_path)
+    yield made
+    made.close()
+
+
+def part(name: str) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("person", [name], indirect=True)
+
+
 @pytest.mark.slow
-@pytest.mark.timeout(900)
-def test_a_person_at_the_page_of_the_demo(demo: Demo, tmp_path: Path) -> None:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    node = shutil.which("node")
-    if chromium is None or node is None or not (JAVASCRIPT / "node_modules").is_dir():
-        pytest.skip("needs Chromium, Node.js and npm ci --prefix tests/conformance/js")
-    script = str(JAVASCRIPT / "workbench.mjs")
-    with subprocess.Popen(
-        [node, script, demo.url, chromium, str(tmp_path)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    ) as page:
-        assert page.stdin is not None
-        assert page.stdout is not None
-        assert page.stdout.readline() == "end\n"
-        demo.stop()
-        demo.start()
-        page.stdin.write("back\n")
-        page.stdin.flush()
-        seen = json.loads(page.stdout.readline())
-    assert seen["problems"] == []
+@part("goals")
+def test_the_map_grows_and_the_robot_arrives_at_goals(person: Person) -> None:
+    seen = person.seen()
     first, last = seen["known"]
     assert last > first
     assert "sent" in seen["clicked"]
     assert "sent" in seen["withHeading"]
     assert seen["missed"] < 0.6
+
+
+@pytest.mark.slow
+@part("panels")
+def test_panels_display_data_and_control_the_run(person: Person) -> None:
+    seen = person.seen()
     assert seen["log"]
     assert "Odometry" in seen["raw"]
     # While paused time does not advance; a step of the panel is 100 ms.
     assert seen["whilePaused"] == 0
     assert seen["step"] == 100_000_000
+
+
+@pytest.mark.slow
+@part("sizes")
+def test_the_page_fits_every_size_in_both_themes(person: Person) -> None:
+    seen = person.seen()
     for name in ("desktop-dark", "tablet-light", "phone-dark", "phone-light"):
         assert max(seen[name]) <= 0, f"{name} scrolls"
-    assert {name: found for name, found in seen["axe"].items() if found} == {}
-    assert seen["lost"]
+
+
+@pytest.mark.slow
+@part("touch")
+def test_a_thumb_takes_over_and_stops(person: Person) -> None:
+    person.seen()
+
+
+@pytest.mark.slow
+@part("restart")
+def test_the_page_returns_with_the_server(person: Person, demo: Demo) -> None:
+    assert person.read() == "end\n"
+    demo.stop()
+    demo.start()
+    person.write("back")
+    assert person.seen()["lost"]

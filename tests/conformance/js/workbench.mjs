@@ -1,17 +1,17 @@
-// A person at the page of `navette demo`: goals, panels, run control; the server ends and
-// returns; three sizes, two themes, and what axe finds in each.
+// A person at the page of `navette demo`, in parts: goals (also with a heading), panels and
+// run control, sizes and themes, a thumb on the stick, a server that ends and returns.
 //
-//   node workbench.mjs http://127.0.0.1:PORT CHROMIUM FOLDER
+//   node workbench.mjs goals|panels|sizes|touch|restart http://127.0.0.1:PORT CHROMIUM FOLDER
 //
-// Prints what the page displays; waits for the line "back" on its input after "end".
+// Prints what the page displays, and what axe finds; the part `restart` prints "end" and
+// waits for the line "back" on its input.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 
-const [url, executablePath, folder] = process.argv.slice(2);
+const [part, url, executablePath, folder] = process.argv.slice(2);
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const input = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 const browser = await chromium.launch({
   executablePath,
   args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
@@ -36,17 +36,17 @@ async function serious(page) {
   return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 160)).join(" | ")}`);
 }
 
-try {
-  const page = await newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
-  const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 90_000, polling: 100 });
-  const open = (kind, settings = {}) => page.evaluate(([id, given]) => navette.open(id, given), [kind, settings]);
+const until = (page, check, argument, timeout = 90_000) => page.waitForFunction(check, argument, { timeout, polling: 100 });
+const desktop = () => newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
 
+async function goals() {
+  const page = await desktop();
   // The map grows.
   await page.evaluate(() => {
     window.known = [];
     navette.connection.subscribe("/map", {}, ({ value }) => known.push(value.data.reduce((sum, cell) => sum + (cell >= 0), 0)));
   });
-  await until(() => known.length > 3 && known.at(-1) > known[0]);
+  await until(page, () => known.length > 3 && known.at(-1) > known[0]);
   seen.known = await page.evaluate(() => [known[0], known.at(-1)]);
 
   // A goal by a click, then one with a heading, where the robot came from: it arrives.
@@ -64,13 +64,13 @@ try {
   }, place);
   const pose = () => page.evaluate(() => navette.transforms.lookUp("map", "base_link").translation.slice(0, 2));
   const start = await pose();
-  await until(([x, y]) => {
+  await until(page, ([x, y]) => {
     const [rx, ry] = navette.transforms.lookUp("map", "base_link").translation;
     return Math.hypot(rx - x, ry - y) > 1.5;
   }, start);
   const answer = () => page.textContent("#answer");
   await page.mouse.click(...await pixelOf(start));
-  await until(() => /sent/.test(document.querySelector("#answer").textContent));
+  await until(page, () => /sent/.test(document.querySelector("#answer").textContent));
   seen.clicked = await answer();
   await page.getByRole("button", { name: /goal pose|heading/i }).first().click();
   const [hx, hy] = await pixelOf(start);
@@ -78,7 +78,7 @@ try {
   await page.mouse.down();
   await page.mouse.move(hx, hy - 60, { steps: 5 });
   await page.mouse.up();
-  await until((before) => document.querySelector("#answer").textContent !== before, seen.clicked);
+  await until(page, (before) => document.querySelector("#answer").textContent !== before, seen.clicked);
   seen.withHeading = await answer();
   await page.evaluate(() => {
     navette.connection.subscribe("/planner/status", {}, ({ value }) => { window.planner = value; });
@@ -89,23 +89,27 @@ try {
   }, start, { timeout: 240_000, polling: 200 });
   const [x, y] = await pose();
   seen.missed = Math.hypot(x - start[0], y - start[1]);
+}
 
+async function panels() {
+  const page = await desktop();
+  const open = (kind, settings = {}) => page.evaluate(([id, given]) => navette.open(id, given), [kind, settings]);
   // Panels display data.
   await open("log");
   await page.locator(".log-list li").first().waitFor({ timeout: 90_000 });
   seen.log = await page.textContent(".log-list li:first-child .log-node");
   await open("plot", { paths: ["/odom/filtered.twist.twist.linear.x"] });
-  await until(() => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
+  await until(page, () => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
   await open("image", { topic: "/camera" });
-  await until(() => /\d+ × \d+ · \d/.test(document.querySelector(".image-facts")?.textContent ?? ""));
+  await until(page, () => /\d+ × \d+ · \d/.test(document.querySelector(".image-facts")?.textContent ?? ""));
   seen.image = await page.textContent(".image-facts");
   await open("raw", { topic: "/odom/filtered" });
-  await until(() => document.querySelectorAll(".raw-tree .raw-row").length > 4);
+  await until(page, () => document.querySelectorAll(".raw-tree .raw-row").length > 4);
   seen.raw = await page.textContent(".raw-facts");
   await open("graph");
-  await until(() => document.querySelectorAll(".graph-node").length > 5);
+  await until(page, () => document.querySelectorAll(".graph-node").length > 5);
   await open("diagnostics");
-  await until(() => document.querySelectorAll(".diagnostics-nodes li").length > 5);
+  await until(page, () => document.querySelectorAll(".diagnostics-nodes li").length > 5);
   await open("tree");
   await page.locator(".tree-lines li").first().waitFor();
   await open("frames");
@@ -116,7 +120,7 @@ try {
   await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
   const slider = page.locator('input[aria-label="/control.cruise_speed_mps, slider"]');
   await slider.fill("0.6");
-  await until(() => navette.connection.parameters.get("/control.cruise_speed_mps").value === 0.6);
+  await until(page, () => navette.connection.parameters.get("/control.cruise_speed_mps").value === 0.6);
 
   // Run control: paused time stands, a step advances it, continuing continues.
   await open("run");
@@ -128,15 +132,17 @@ try {
   await page.waitForTimeout(500);
   seen.whilePaused = (await now()) - paused;
   await page.getByRole("button", { name: "Step", exact: true }).click();
-  await until((before) => Number(navette.connection.nowNs) > before, paused);
+  await until(page, (before) => Number(navette.connection.nowNs) > before, paused);
   await page.waitForTimeout(300);
   seen.step = (await now()) - paused;
   await page.getByRole("button", { name: "Continue", exact: true }).last().click();
-  await until((before) => Number(navette.connection.nowNs) > before + 5e8, paused);
+  await until(page, (before) => Number(navette.connection.nowNs) > before + 5e8, paused);
 
   seen.axe.panels = await serious(page);
   await page.screenshot({ path: `${folder}/desktop-light.png` });
+}
 
+async function sizes() {
   // Sizes and themes.
   for (const [name, width, height, colorScheme] of [["desktop-dark", 1440, 900, "dark"], ["tablet-light", 820, 1180, "light"], ["phone-dark", 360, 800, "dark"], ["phone-light", 800, 360, "light"]]) {
     const other = await newPage({ viewport: { width, height }, colorScheme, hasTouch: width < 900 });
@@ -147,7 +153,9 @@ try {
     await other.screenshot({ path: `${folder}/${name}.png` });
     await other.context().close();
   }
+}
 
+async function touch() {
   // A thumb on the stick takes over; without it the robot stops; so it does by Stop.
   const phone = await newPage({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   const commander = (text) => phone.waitForFunction((wanted) => document.querySelector("#commander").textContent.startsWith(wanted), text, { timeout: 60_000 });
@@ -171,17 +179,24 @@ try {
   await commander("Emergency stop");
   await phone.locator("#release").tap();
   await phone.context().close();
+}
 
+async function restart() {
+  const page = await desktop();
   // The server ends and returns.
   const problemsBefore = seen.problems.length;
   console.log("end");
-  await until(() => navette.connection.status.state === "lost");
+  await until(page, () => navette.connection.status.state === "lost");
   seen.lost = await page.textContent("#headline");
-  await input.next();
-  await until(() => navette.connection.status.state === "live");
-  await until(() => navette.connection.topics.has("/map"));
-  await until(() => navette.connection.statistics("/tf")?.count > 0);
+  await createInterface({ input: process.stdin })[Symbol.asyncIterator]().next();
+  await until(page, () => navette.connection.status.state === "live");
+  await until(page, () => navette.connection.topics.has("/map"));
+  await until(page, () => navette.connection.statistics("/tf")?.count > 0);
   seen.problems = seen.problems.slice(0, problemsBefore); // refused connections meanwhile
+}
+
+try {
+  await { goals, panels, sizes, touch, restart }[part]();
   console.log(JSON.stringify(seen));
 } finally {
   await browser.close();

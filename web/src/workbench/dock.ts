@@ -46,6 +46,10 @@ export class Dock implements Arrangement {
     this.#api.onDidLayoutChange(() => {
       if (!this.#isRestoring) this.context.changed();
     });
+    this.element.addEventListener("keydown", (event) => {
+      const tab = event.target instanceof HTMLElement ? event.target.dataset["tabPanelId"] : undefined;
+      if (event.key === "Delete" && tab !== undefined && tab !== SCENE) this.#api.getPanel(tab)?.api.close();
+    });
     this.#api.onDidRemovePanel(({ id }) => {
       this.#hosts.get(id)?.dispose();
       this.#hosts.delete(id);
@@ -188,7 +192,8 @@ class Tab {
   init({ api, title }: { api: IDockviewPanel["api"]; title: string }): void {
     this.#title.textContent = title;
     api.onDidTitleChange((event) => (this.#title.textContent = event.title));
-    const close = h("button", { class: "bare close", "aria-label": `Close ${title}`, tabindex: "-1" }, icon("close"));
+    // A tab contains no other control: the sign is the mouse's, the Delete key closes as well.
+    const close = h("span", { class: "close", title: `Close ${title} (Delete)`, "aria-hidden": "true" }, icon("close"));
     close.addEventListener("pointerdown", (event) => event.stopPropagation()); // begins no drag
     close.addEventListener("click", (event) => {
       event.stopPropagation();
