@@ -1,9 +1,11 @@
-"""Take the picture of the live view: ``python docs/screenshot.py``. Needs chromium.
+"""Take the pictures of the live view: ``python docs/screenshot.py``. Needs chromium.
 
-Runs the demo in real time and captures the page in the middle of the drive.
+Runs the demo in real time and captures the page during the drive: the workbench, the
+scene in 3D, a phone, and a moving picture.
 """
 
 import base64
+import io
 import itertools
 import json
 import re
@@ -12,17 +14,36 @@ import sys
 import tempfile
 import urllib.request
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from PIL import Image
 from websockets.sync.client import ClientConnection, connect
 
-PICTURE = Path(__file__).parent / "images" / "page.png"
-MOMENT = "0:42"  # as the page shows the robot's time
-WIDTH, HEIGHT, SCALE = 1240, 886, 1.5
-SHOW_ALL = """
-[...document.querySelectorAll('button')]
-  .find(button => button.textContent.trim() === 'Whole map').click()
-"""
+IMAGES = Path(__file__).parent / "images"
+FILM = IMAGES / "page.webp"
+FILM_SIZE, FILM_S, FILM_HZ = (960, 600), 14, 4
+
+
+class Shot(NamedTuple):
+    """A picture: when the robot's clock shows ``moment``, after ``script``."""
+
+    name: str
+    moment: str
+    width: int
+    height: int
+    scale: float
+    script: str = ""
+
+
+SHOTS = (
+    Shot(
+        "page.png", "0:24", 1440, 900, 1.5, "navette.open('plot'); navette.open('tree')"
+    ),
+    Shot(
+        "page-3d.png", "0:30", 1280, 720, 1.5, "navette.scene.setThreeDimensional(true)"
+    ),
+    Shot("page-phone.png", "0:36", 390, 780, 2.0),
+)
 
 
 class Browser:
@@ -46,10 +67,11 @@ class Browser:
         return result.get("result", {}).get("value")
 
 
-def capture(address: str, folder: str) -> bytes:
-    """Open the page, wait for the moment and return the PNG file."""
+def capture(address: str, folder: str) -> None:
+    """Open the page and take all pictures."""
     command = ["chromium", "--headless", "--no-sandbox", "--hide-scrollbars"]
-    command += ["--remote-debugging-port=0", f"--user-data-dir={folder}", "about:blank"]
+    command += ["--enable-unsafe-swiftshader", "--remote-debugging-port=0"]
+    command += [f"--user-data-dir={folder}", "about:blank"]
     browser = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert browser.stderr is not None
     try:
@@ -60,23 +82,63 @@ def capture(address: str, folder: str) -> bytes:
         with urllib.request.urlopen(f"http://{found[1]}/json") as reply:
             page = next(each for each in json.load(reply) if each["type"] == "page")
         with connect(page["webSocketDebuggerUrl"], max_size=None) as socket:
-            return _capture(Browser(socket), address)
+            _film(Browser(socket), address)
+            for shot in SHOTS:
+                _take(Browser(socket), address, shot)
     finally:
         browser.terminate()
         browser.wait()
 
 
-def _capture(browser: Browser, address: str) -> bytes:
-    metrics = {"width": WIDTH, "height": HEIGHT, "deviceScaleFactor": SCALE}
-    browser.call("Emulation.setDeviceMetricsOverride", **metrics, mobile=False)
+def _open(
+    browser: Browser, address: str, width: int, height: int, scale: float
+) -> None:
+    metrics = {"width": width, "height": height, "deviceScaleFactor": scale}
+    browser.call("Emulation.setDeviceMetricsOverride", **metrics, mobile=width < 700)
+    browser.call("Page.navigate", url="about:blank")
     browser.call("Page.navigate", url=address)
-    pause = "new Promise(done => setTimeout(done, 200))"
-    while MOMENT not in (browser.evaluate("document.body.innerText") or ""):
-        browser.evaluate(pause)
-    browser.evaluate(SHOW_ALL)
-    browser.evaluate(pause)
-    image = browser.call("Page.captureScreenshot", format="png")["data"]
-    return base64.b64decode(image)
+
+
+def _picture(browser: Browser) -> bytes:
+    while True:
+        answer = browser.call("Page.captureScreenshot", format="png")
+        if "data" in answer:  # none while the page loads
+            return base64.b64decode(answer["data"])
+
+
+def _pause(browser: Browser, seconds: float) -> None:
+    browser.evaluate(f"new Promise(done => setTimeout(done, {1000 * seconds}))")
+
+
+def _take(browser: Browser, address: str, shot: Shot) -> None:
+    _open(browser, address, (shot.width, shot.height), shot.scale)
+    _pause(browser, 2.0)
+    browser.evaluate(shot.script)
+    clock = "document.querySelector('#clock')?.textContent ?? ''"
+    while (browser.evaluate(clock) or "") < shot.moment:
+        _pause(browser, 0.2)
+    (IMAGES / shot.name).write_bytes(_picture(browser))
+    browser.evaluate("localStorage.clear()")
+
+
+def _film(browser: Browser, address: str) -> None:
+    """Record the first seconds: the map grows while the robot drives."""
+    _open(browser, address, FILM_SIZE, 1.0)
+    frames = []
+    for _ in range(FILM_S * FILM_HZ):
+        _pause(browser, 1.0 / FILM_HZ)
+        picture = Image.open(io.BytesIO(_picture(browser)))
+        frames.append(picture.convert("RGB"))
+    first, *others = frames
+    first.save(
+        FILM,
+        save_all=True,
+        append_images=others,
+        duration=1000 // FILM_HZ,
+        loop=0,
+        quality=60,
+        method=4,
+    )
 
 
 def main() -> None:
@@ -90,7 +152,7 @@ def main() -> None:
             if (found := re.search(r"http://127\.0\.0\.1:\d+", line))
         )
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-            PICTURE.write_bytes(capture(address, folder))
+            capture(address, folder)
     finally:
         demo.terminate()
         demo.wait()
