@@ -46,12 +46,13 @@ def compile_driving() -> None:
 def _make(name: str) -> None:
     """Create a node, which compiles its kernels, and destroy it."""
     from navette.navigation.stack.stack import node_class
-    from navette.runtime import Context, LoggingSeverity, VirtualClock
+    from navette.runtime import Context, LoggingSeverity, Node, VirtualClock
 
     context = Context(clock=VirtualClock())
     context.init(args=[], console_level=LoggingSeverity.FATAL)
     try:
-        node_class(name)(context=context)
+        kind: Callable[..., Node] = node_class(name)
+        kind(context=context)
     finally:
         context.try_shutdown()
 
