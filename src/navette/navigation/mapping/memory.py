@@ -23,6 +23,8 @@ from navette.navigation.grids import (
     mark_points,
     marked_points,
     merge,
+    padded_sparse,
+    sparse_zeros,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.marked_points import MarkedPoints
@@ -107,7 +109,7 @@ class MapMemory:
         # What clearing restores; grows with the map.
         self._base = cells
         self._cells = cells.copy()
-        self._masks = np.zeros(self.spec.shape, np.uint64)
+        self._masks = sparse_zeros(self.spec.shape, np.uint64)
         self._vanished = VanishedCells(self.spec.shape)
         self._marked = MarkedPoints()
         self._changed: CellWindow | None = None
@@ -258,7 +260,7 @@ class MapMemory:
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
-        self._masks = np.pad(self._masks, pad)
+        self._masks = padded_sparse(self._masks, pad)
         self._vanished.grow(pad)
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
@@ -298,7 +300,7 @@ class MapMemory:
         if hits is not None:
             return mark_points(self._masks, self.spec, hits)
         # Lethal cells of this costmap have no points, and older ones may mislead.
-        self._masks = np.zeros(self.spec.shape, np.uint64)
+        self._masks = sparse_zeros(self.spec.shape, np.uint64)
         self._marked.clear()
         return None
 

@@ -8,7 +8,7 @@ point where an earlier beam ended proves that the obstacle is gone.
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import CellWindow
+from navette.navigation.grids import CellWindow, padded_sparse
 
 Points = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class VanishedCells:
 
     def grow(self, pad: tuple[tuple[int, int], tuple[int, int]]) -> None:
         """Add cells around, as :func:`numpy.pad` does."""
-        self._passes = np.pad(self._passes, pad)
+        self._passes = padded_sparse(self._passes, pad)
 
     def update(
         self, cells: NDArray[np.int64], beside: NDArray[np.bool_], window: CellWindow

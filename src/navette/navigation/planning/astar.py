@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.navigation.grids import sparse_zeros
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
@@ -107,7 +108,7 @@ class AStar:
     def _prepare(self, size: int) -> None:
         self._stamp += 1
         if self._records.size != size or self._stamp > _LAST_STAMP:
-            self._records = np.zeros(size, np.int64)
+            self._records = sparse_zeros((size,), np.int64)
             self._stamp = 1
 
 
