@@ -7,27 +7,32 @@ the odometry continues the pose.
 """
 
 from collections import deque
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
-from navette.errors import InvalidInputError
+from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Pose2, Transform3
+from navette.geometry.map_files import OccupancyMap, write_occupancy_map
 from navette.geometry.messages import header, transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
-from navette.msgs.nav_msgs.msg import Odometry, Path
+from navette.msgs.nav2_msgs.srv import SaveMap
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.nav_msgs.msg import Path as PathMsg
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import grid_to_message
 from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.navigation.slam.graph_file import SUFFIX, read_graph, write_graph
 from navette.navigation.slam.messages import planar_scan
-from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.params import MAPPING, SlamParams
 from navette.navigation.slam.rendering import MapRenderer
 from navette.navigation.slam.slam import Slam, SlamEstimate
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
-from navette.runtime.stage.path_messages import pose_message
+from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.tf.exceptions import TransformException
 
@@ -55,6 +60,11 @@ class SlamNode(StageNode):
             timeout_s=0.5,
             callback="on_odometry",
         ),
+        Input.of(
+            topics.INITIAL_POSE,
+            "pose of the robot in a known map, roughly, according to a person",
+            callback="on_initial_pose",
+        ),
     )
     OUTPUTS: ClassVar = (
         Output.of(topics.TF, "map → odom, after each scan", rate_hz=10.0),
@@ -69,6 +79,7 @@ class SlamNode(StageNode):
     )
     FIXED_AT_START = frozenset(
         {"map_frame", "odom_frame", "base_frame"}
+        | {"known_map", "mode", "searches_start"}
         | {"start_x_m", "start_y_m", "start_yaw_rad"}
     )
 
@@ -82,6 +93,42 @@ class SlamNode(StageNode):
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._start()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
+        self.create_service(SaveMap, "slam/save_map", self.on_save_map)
+
+    def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
+        """Place the robot in the known map."""
+        frame_id = msg.header.frame_id
+        if frame_id not in ("", self.params.map_frame):
+            raise InvalidInputError(
+                "unknown_frame",
+                f"frame {frame_id!r}; expected {self.params.map_frame!r}",
+            )
+        if not self.params.known_map:
+            self.get_logger().warning(
+                "initial pose ignored: this map began where the robot was put down"
+            )
+        self._slam.place(pose_of(msg.pose.pose))
+
+    def on_save_map(self, request: Any, response: Any) -> Any:
+        """Write MAP.yaml and its image, and MAP.slam to continue the map."""
+        try:
+            stem = Path(request.map_url.removeprefix("file://")).expanduser()
+            if not stem.name:
+                raise InvalidValueError("map_url is empty; expected the path of a file")
+            cells, spec = self._renderer.render(self._slam.placed_scans())
+            written = write_occupancy_map(
+                stem,
+                OccupancyMap(cells, spec.resolution, spec.origin),
+                mode=request.map_mode or "trinary",
+                image_format=request.image_format.lower(),
+            )
+            write_graph(stem.with_name(stem.name + SUFFIX), self._slam.graph)
+        except (OSError, ValueError, RuntimeError) as error:
+            self.get_logger().error(f"map not saved: {error}")
+            return response
+        self.get_logger().info(f"map saved: {written}, and {stem.name}{SUFFIX}")
+        response.result = True
+        return response
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose; use the scans that waited for it."""
@@ -112,7 +159,15 @@ class SlamNode(StageNode):
     def _start(self) -> None:
         params = self.params
         start = Pose2(params.start_x_m, params.start_y_m, params.start_yaw_rad)
-        self._slam = Slam(params, start)
+        graph = None
+        if params.known_map:
+            graph = read_graph(Path(params.known_map).expanduser(), params)
+        self._slam = Slam(
+            params,
+            None if graph and params.searches_start else start,
+            graph=graph,
+            is_mapping=params.mode == MAPPING,
+        )
         self._renderer = MapRenderer(params)
         self._tracker = PoseTracker(self, params.base_frame, params.odom_frame)
         self._waiting: deque[tuple[int, LaserScan]] = deque(maxlen=_WAITING)
@@ -199,7 +254,7 @@ class SlamNode(StageNode):
     def _publish_trajectory(self) -> None:
         """Publish where the robot was at the key scans, by the present map."""
         graph, frame = self._slam.graph, self.params.map_frame
-        path = Path(header=header(self._newest_ns, frame))
+        path = PathMsg(header=header(self._newest_ns, frame))
         path.poses = [
             PoseStamped(
                 header=header(key.stamp_ns, frame), pose=pose_message(graph.pose(node))

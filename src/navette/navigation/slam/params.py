@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass
 
+from navette.errors import ParameterError
 from navette.navigation.shared_params import FrameParams
 from navette.params import param
+
+MODES = MAPPING, LOCALIZATION = ("mapping", "localization")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,6 +17,17 @@ class SlamParams(FrameParams):
     start_x_m: float = param(0.0, "x of the robot in the map at the start")
     start_y_m: float = param(0.0, "y of the robot in the map at the start")
     start_yaw_rad: float = param(0.0, "heading of the robot in the map at the start")
+    known_map: str = param(
+        "", "file of `navette slam --save` or the service slam/save_map to begin with"
+    )
+    mode: str = param(
+        MAPPING,
+        "mapping: the map grows; localization: known_map stays as it is",
+        choices=MODES,
+    )
+    searches_start: bool = param(
+        False, "search all of known_map for the start, without a start pose"
+    )
     rate_hz: float = param(
         10.0, "scans per second that are matched at most", at_least=0.1, at_most=100.0
     )
@@ -114,3 +128,10 @@ class SlamParams(FrameParams):
     free_range_m: float = param(
         5.0, "how far a beam without an echo counts as free", at_least=0.1
     )
+
+    def check(self) -> None:
+        super().check()
+        if self.mode == LOCALIZATION and not self.known_map:
+            raise ParameterError(
+                "parameter 'mode': 'localization' needs the file 'known_map'"
+            )

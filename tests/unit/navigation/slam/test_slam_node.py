@@ -1,0 +1,231 @@
+"""The node ``slam``: map → odom, pose, status, map, saved maps."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navette.errors import ParameterError
+from navette.geometry import Pose2, Transform3, quaternion_from_rpy
+from navette.geometry.map_files import read_occupancy_map
+from navette.geometry.messages import header, transform_message
+from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
+from navette.msgs.nav2_msgs.srv import SaveMap
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.slam.node import SlamNode
+from navette.runtime import DurabilityPolicy, Parameter, QoSProfile
+from navette.runtime.stage.path_messages import pose_message, pose_of
+from navette.testing import GraphHarness, Probe
+from slam_office import Step, drive, loop
+
+STEPS = list(drive(seed=2, poses=loop(0.1)[:60]))
+TF, ODOMETRY, SCAN = "/tf", "/odom/filtered", "/lidar"
+UPRIGHT = Transform3((0.0, 0.0, 0.2), (0.0, 0.0, 0.0, 1.0))
+
+
+def start(graph: GraphHarness, **values: Any) -> SlamNode:
+    static = graph.node.create_publisher(
+        TFMessage,
+        "/tf_static",
+        QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+    )
+    mount = values.pop("mount", UPRIGHT)
+    static.publish(
+        TFMessage(transforms=[transform_message(0, "base_link", "laser", mount)])
+    )
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    return graph.add(SlamNode(context=graph.context, parameter_overrides=overrides))
+
+
+def scan_message(step: Step, *, mirrored: bool = False) -> LaserScan:
+    scan = step.scan
+    ranges = scan.ranges
+    if mirrored:  # the beams of a scanner upside down run clockwise
+        angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+        order = np.argsort(-angles)
+        return LaserScan(
+            header=header(step.stamp_ns, "laser"),
+            angle_min=-float(angles[order[0]]),
+            angle_increment=scan.angle_increment,
+            range_min=scan.range_min,
+            range_max=scan.range_max,
+            ranges=ranges[order],
+        )
+    return LaserScan(
+        header=header(step.stamp_ns, "laser"),
+        angle_min=scan.angle_min,
+        angle_increment=scan.angle_increment,
+        range_min=scan.range_min,
+        range_max=scan.range_max,
+        ranges=ranges,
+    )
+
+
+def feed(
+    graph: GraphHarness, steps: list[Step], *, odometry: bool = True, **options: Any
+) -> None:
+    for step in steps:
+        graph.publish(SCAN, scan_message(step, **options))
+        if odometry:
+            message = Odometry(
+                header=header(step.stamp_ns, "odom"), child_frame_id="base_link"
+            )
+            message.pose.pose = pose_message(step.odom_T_base)
+            graph.publish(ODOMETRY, message)
+        graph.run_for(0.2)
+
+
+def poses(probe: Probe) -> list[Pose2]:
+    return [pose_of(each.pose.pose) for each in probe.messages]
+
+
+def test_pose_transform_and_status_follow_each_scan() -> None:
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        transforms = graph.collect(TF, TFMessage)
+        status = graph.collect(
+            "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
+        )
+        feed(graph, STEPS)
+        assert found.count == transforms.count == len(STEPS)
+        assert status.messages[0].message == "localizing"
+        assert status.last.message == "localized"
+        for step, pose, message in zip(
+            STEPS, poses(found), transforms.messages, strict=True
+        ):
+            assert pose.distance_to(step.truth) < 0.03
+            (transform,) = message.transforms
+            assert transform.header.frame_id == "map"
+            assert transform.child_frame_id == "odom"
+            moved = transform.transform.translation
+            q = transform.transform.rotation
+            map_T_odom = Pose2(moved.x, moved.y, 2 * math.atan2(q.z, q.w))
+            assert (map_T_odom @ step.odom_T_base).distance_to(pose) < 1e-9
+        covariance = np.asarray(found.last.pose.covariance).reshape(6, 6)
+        assert 0.0 < covariance[0, 0] < 0.01
+        assert 0.0 < covariance[5, 5] < 0.01
+
+
+def test_without_odometry_the_pose_is_published_a_little_later() -> None:
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5, rate_hz=20.0)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        transforms = graph.collect(TF, TFMessage)
+        feed(graph, STEPS[:30], odometry=False)
+        assert found.count == 28
+        assert transforms.count == 0
+        assert poses(found)[-1].distance_to(STEPS[27].truth) < 0.05
+
+
+def test_a_scanner_upside_down_sees_the_same() -> None:
+    flipped = Transform3((0.0, 0.0, 0.2), quaternion_from_rpy(math.pi, 0.0, 0.0))
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5, mount=flipped)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        feed(graph, STEPS, mirrored=True)
+        assert poses(found)[-1].distance_to(STEPS[-1].truth) < 0.05
+
+
+def test_a_tilted_scanner_and_an_unknown_frame_are_refused() -> None:
+    tilted = Transform3((0.0, 0.0, 0.2), quaternion_from_rpy(0.0, 0.5, 0.0))
+    with GraphHarness() as graph:
+        node = start(graph, mount=tilted)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        feed(graph, STEPS[:3])
+        assert found.count == 0
+        assert node.dropped_inputs[SCAN, "not_planar"] == 3
+    with GraphHarness() as graph:
+        node = start(graph, base_frame="chassis")
+        feed(graph, STEPS[:3])
+        assert node.dropped_inputs[SCAN, "no_transform"] >= 1
+
+
+def test_a_robot_whose_scans_stop_matching_is_lost_until_they_match_again() -> None:
+    with GraphHarness() as graph:
+        start(graph, lost_scans=5)
+        status = graph.collect(
+            "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
+        )
+        feed(graph, STEPS[:20])
+        assert status.last.message == "localized"
+        blind = [
+            step._replace(scan=type(step.scan)(
+                np.full(360, np.inf, np.float32), step.scan.angle_min,
+                step.scan.angle_increment, step.scan.range_min, step.scan.range_max,
+            ))
+            for step in STEPS[20:26]
+        ]  # fmt: skip
+        feed(graph, blind)
+        assert status.last.message == "lost"
+        assert status.last.level == b"\x02"
+        feed(graph, STEPS[26:30])
+        assert status.last.message == "localized"
+
+
+def test_the_map_is_published_while_it_is_subscribed_to() -> None:
+    with GraphHarness() as graph:
+        start(graph, map_period_s=1.0)
+        feed(graph, STEPS[:20])
+        maps = graph.collect("/slam/map", "nav_msgs/msg/OccupancyGrid", latched=True)
+        graph.run_for(1.5)
+        first = maps.last
+        assert first.header.frame_id == "map"
+        assert set(np.unique(first.data)) == {-1, 0, 100}
+        feed(graph, STEPS[20:])
+        assert maps.count > 1
+        known = [int((np.asarray(each.data) >= 0).sum()) for each in maps.messages]
+        assert known == sorted(known)
+
+
+def test_a_saved_map_is_continued(tmp_path: Path) -> None:
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5)
+        feed(graph, STEPS)
+        request = SaveMap.Request(map_url=str(tmp_path / "office"))
+        assert graph.call(SaveMap, "slam/save_map", request).result
+        refused = SaveMap.Request(map_url=str(tmp_path / "no" / "office"))
+        assert not graph.call(SaveMap, "slam/save_map", refused).result
+    assert (read_occupancy_map(tmp_path / "office.yaml").cells == 100).any()
+    known = str(tmp_path / "office.slam")
+    for values in ({"start_x_m": 6.0, "start_y_m": 1.5}, {"searches_start": True}):
+        with GraphHarness() as graph:
+            node = start(graph, known_map=known, mode="localization", **values)
+            found = graph.collect("/pose", PoseWithCovarianceStamped)
+            feed(graph, STEPS[45:])
+            assert poses(found)[-1].distance_to(STEPS[-1].truth) < 0.04
+            keys = node.dropped_inputs
+            assert not keys
+
+
+def test_an_initial_pose_places_the_robot_in_a_known_map(tmp_path: Path) -> None:
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5)
+        feed(graph, STEPS)
+        graph.call(
+            SaveMap, "slam/save_map", SaveMap.Request(map_url=str(tmp_path / "office"))
+        )
+    with GraphHarness() as graph:
+        known = str(tmp_path / "office.slam")
+        start(graph, known_map=known, start_x_m=40.0, lost_scans=3)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        status = graph.collect(
+            "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
+        )
+        feed(graph, STEPS[40:46])
+        assert status.last.message == "lost"
+        placed = PoseWithCovarianceStamped(header=header(0, "map"))
+        placed.pose.pose = pose_message(STEPS[46].truth @ Pose2(0.1, -0.1, 0.1))
+        graph.publish("/initialpose", placed)
+        feed(graph, STEPS[46:])
+        assert status.last.message == "localized"
+        assert poses(found)[-1].distance_to(STEPS[-1].truth) < 0.04
+
+
+def test_localization_needs_a_map() -> None:
+    with GraphHarness() as graph, pytest.raises(ParameterError, match="known_map"):
+        start(graph, mode="localization")
