@@ -132,7 +132,7 @@ async function panels() {
   await page.waitForTimeout(500);
   seen.whilePaused = (await now()) - paused;
   await page.getByRole("button", { name: "Step", exact: true }).click();
-  await until(page, (before) => Number(navette.connection.nowNs) > before, paused);
+  await until(page, (before) => Number(navette.connection.nowNs) >= before + 1e8, paused);
   await page.waitForTimeout(300);
   seen.step = (await now()) - paused;
   await page.getByRole("button", { name: "Continue", exact: true }).last().click();
