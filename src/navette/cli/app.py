@@ -30,6 +30,7 @@ from navette.cli.methods import MethodOptions
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
 from navette.cli.verbs import DRIVE, VERBS
+from navette.cli.view_options import DEFAULT_VIEW, ViewOptions
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
@@ -137,47 +138,6 @@ MaxTime = Annotated[
 Json = Annotated[
     bool, Option("--json", help="Print a summary of the run as JSON on stdout.")
 ]
-Port = Annotated[
-    int,
-    Option(
-        min=0,
-        max=65535,
-        metavar="PORT",
-        help="Port of the live view; 0 selects a free port.",
-    ),
-]
-Host = Annotated[
-    str,
-    Option(
-        metavar="ADDRESS",
-        help="Address of the live view. 0.0.0.0 lets other machines connect; they need"
-        " the token, and the keys of NAVETTE_SECURITY encrypt the connection.",
-    ),
-]
-Unencrypted = Annotated[
-    bool,
-    Option(
-        "--unencrypted", help="With --host: connect other machines without encryption."
-    ),
-]
-Origins = Annotated[
-    list[str] | None,
-    Option(
-        "--origin",
-        metavar="ORIGIN",
-        help="Also accept web pages of this origin, such as file:// for the Foxglove"
-        " desktop app. Repeat for several.",
-    ),
-]
-Share = Annotated[
-    bool,
-    Option(
-        "--share",
-        help="Open the run to all programs of this machine, or of the network that"
-        " ROS_DOMAIN_ID and NAVETTE_ROUTER select. Default: only your own programs can"
-        " join.",
-    ),
-]
 
 
 @click.group(
@@ -216,13 +176,9 @@ def demo(
     robot: Robot = None,
     methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
-    port: Port = 8765,
-    host: Host = "127.0.0.1",
-    unencrypted: Unencrypted = False,
-    origin: Origins = None,
+    view: ViewOptions = DEFAULT_VIEW,
     speed: Speed = None,
     max_time: MaxTime = None,
-    share: Share = False,
 ) -> None:
     """Run the demo: a robot explores an unknown arena; watch it in the live view.
 
@@ -235,20 +191,12 @@ def demo(
         world="arena",
         robot=robot,
         goals=demo_goals(),
-        methods=methods.chosen,
-        replacements=methods.replacements,
-        parameters=methods.parameters,
         tree=tree,
         speed=parse_speed(speed or "1"),
         max_time_s=max_time,
-        port=port,
-        host=host,
-        unencrypted=unencrypted,
-        origins=tuple(origin or ()),
-        share=share,
         verb="demo",
     )
-    _run(options, as_json=False)
+    _run(methods.applied_to(view.applied_to(options)), as_json=False)
 
 
 @app.command(panel=DRIVE)
@@ -271,11 +219,7 @@ def sim(
     speed_zones: SpeedZones = None,
     max_time: MaxTime = None,
     as_json: Json = False,
-    port: Port = 8765,
-    host: Host = "127.0.0.1",
-    unencrypted: Unencrypted = False,
-    origin: Origins = None,
-    share: Share = False,
+    view: ViewOptions = DEFAULT_VIEW,
 ) -> None:
     """Simulate a robot in WORLD and drive it to goals.
 
@@ -297,21 +241,13 @@ def sim(
         record_images=record_images,
         overwrite=overwrite,
         params_files=tuple(params or ()),
-        methods=methods.chosen,
-        replacements=methods.replacements,
-        parameters=methods.parameters,
         tree=tree,
         known_map=known_map,
         keepout=keepout,
         speed_zones=speed_zones,
         max_time_s=max_time,
-        port=port,
-        host=host,
-        unencrypted=unencrypted,
-        origins=tuple(origin or ()),
-        share=share,
     )
-    _run(options, as_json=as_json)
+    _run(methods.applied_to(view.applied_to(options)), as_json=as_json)
 
 
 def _run(options: "RunOptions", *, as_json: bool) -> None:

@@ -14,16 +14,15 @@ from navette.cli.app import (
     Headless,
     Json,
     MaxTime,
-    Port,
     Robot,
     Seed,
-    Share,
     Speed,
     World,
 )
 from navette.cli.arguments import parse_speed
 from navette.cli.methods import MethodOptions
 from navette.cli.options import Option
+from navette.cli.view_options import DEFAULT_VIEW, ViewOptions
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -60,8 +59,7 @@ def explore(
     seed: Seed = 0,
     max_time: MaxTime = None,
     as_json: Json = False,
-    port: Port = 8765,
-    share: Share = False,
+    view: ViewOptions = DEFAULT_VIEW,
 ) -> None:
     """Map an unknown world: in the simulator, or with the running robot.
 
@@ -87,14 +85,10 @@ def explore(
             headless=headless,
             speed=parse_speed(speed or ("max" if headless else "1")),
             seed=seed,
-            methods=methods.chosen,
-            replacements=methods.replacements,
-            parameters=methods.parameters,
             max_time_s=max_time,
-            port=port,
-            share=share,
             verb="explore",
         )
+        options = methods.applied_to(view.applied_to(options))
         code = _explore_simulated(screen, options, as_json=as_json)
     raise click.exceptions.Exit(code)
 

@@ -1,10 +1,14 @@
 """Options that choose the methods of the stages; several verbs have them."""
 
+import dataclasses
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from navette.cli.options import Option
 from navette.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from navette.navigation.stack import RunOptions
 
 PANEL = "Bring your own"
 _PLACE = "NAME|FILE.py:CLASS"
@@ -130,3 +134,12 @@ class MethodOptions:
             "localization": self.localization,
         }
         return {kind: name for kind, name in given.items() if name is not None}
+
+    def applied_to(self, run: "RunOptions") -> "RunOptions":
+        """Return the options of a run with these."""
+        return dataclasses.replace(
+            run,
+            methods=self.chosen,
+            replacements=self.replacements,
+            parameters=self.parameters,
+        )

@@ -1,0 +1,71 @@
+"""Options of the live view; verbs that run the simulator have them."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+from navette.cli.options import Option
+
+if TYPE_CHECKING:
+    from navette.navigation.stack import RunOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViewOptions:
+    """Address of the live view, and who may connect."""
+
+    port: Annotated[
+        int,
+        Option(
+            min=0,
+            max=65535,
+            metavar="PORT",
+            help="Port of the live view; 0 selects a free port.",
+        ),
+    ] = 8765
+    host: Annotated[
+        str,
+        Option(
+            metavar="ADDRESS",
+            help="Address of the live view. 0.0.0.0 lets other machines connect; they"
+            " need the token, and the keys of NAVETTE_SECURITY encrypt the connection.",
+        ),
+    ] = "127.0.0.1"
+    unencrypted: Annotated[
+        bool,
+        Option(
+            "--unencrypted",
+            help="With --host: connect other machines without encryption.",
+        ),
+    ] = False
+    origin: Annotated[
+        list[str] | None,
+        Option(
+            "--origin",
+            metavar="ORIGIN",
+            help="Also accept web pages of this origin, such as file:// for the"
+            " Foxglove desktop app. Repeat for several.",
+        ),
+    ] = None
+    share: Annotated[
+        bool,
+        Option(
+            "--share",
+            help="Open the run to all programs of this machine, or of the network that"
+            " ROS_DOMAIN_ID and NAVETTE_ROUTER select. Default: only your own programs"
+            " can join.",
+        ),
+    ] = False
+
+    def applied_to(self, run: "RunOptions") -> "RunOptions":
+        """Return the options of a run with these."""
+        return replace(
+            run,
+            port=self.port,
+            host=self.host,
+            unencrypted=self.unencrypted,
+            origins=tuple(self.origin or ()),
+            share=self.share,
+        )
+
+
+DEFAULT_VIEW = ViewOptions()
