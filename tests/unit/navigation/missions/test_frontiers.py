@@ -136,3 +136,16 @@ def test_a_long_frontier_is_divided() -> None:
     assert len(found.frontiers) == 4
     assert sum(each.length_m for each in found.frontiers) == pytest.approx(15.0)
     assert all(abs(each.goal[0] - each.middle[0]) < 1.1 for each in found.frontiers)
+
+
+@pytest.mark.parametrize(("passage_m", "reached"), [(0.4, 1), (0.9, 0)])
+def test_a_frontier_behind_a_door_is_reached_if_the_robot_fits(
+    passage_m: float, reached: int
+) -> None:
+    """The door is too narrow to look from, but not to pass."""
+    room = ["#" + "." * 23 + "#"] * 5
+    cells, spec = grid("#" * 25, *room, "#" * 12 + "." + "#" * 12, *room, "#" * 25)
+    cells[1:6, 24] = -1  # the frontier, in the lower room
+    params = FrontierParams(0.9, 100, 0.9, 1.5, 0.0, 10.0, passage_m)
+    found = explore(cells, spec, (3.25, 5.25), params)
+    assert len(found.frontiers) == reached

@@ -39,6 +39,7 @@ class FrontierParams:
         lethal_cost: map cost from which a cell is an obstacle.
         min_length_m: shorter frontiers are ignored: noise between cells.
         max_length_m: longer frontiers are divided.
+        passage_m: distance from obstacles that the robot needs to pass between them.
         viewpoint_m: largest distance from a frontier to its goal, along free cells.
         gain: metres of path that compensate for a metre of frontier.
     """
@@ -49,6 +50,7 @@ class FrontierParams:
     viewpoint_m: float = 2.0
     gain: float = 1.0
     max_length_m: float = 4.0
+    passage_m: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -102,9 +104,10 @@ def explore(
     open_edge = _open_edge(cells, free, away)
     closed_edge = free & _beside(occupied) & ~open_edge
     open_cells, closed_cells = 0, int(closed_edge.sum())
-    drivable = free & (away >= params.clearance_m)
     # A start within the clearance of an obstacle leaves it through free cells.
-    steps = steps_from(spec.cell_of(*robot), free, drivable)
+    passable = free & (away >= min(params.passage_m, params.clearance_m))
+    steps = steps_from(spec.cell_of(*robot), free, passable)
+    steps[away < params.clearance_m] = UNREACHED  # passed, but no place to look from
     longest = max(1, round(params.max_length_m / spec.resolution))
     found, unreachable = [], 0
     for cluster in connected_sets(open_edge):

@@ -14,6 +14,13 @@ class ExplorerParams(FrameParams):
     clearance_m: float = param(
         0.35, "distance of a goal from obstacles", at_least=0.0, at_most=10.0
     )
+    passage_m: float = param(
+        0.3,
+        "distance from obstacles that the robot needs to pass between them",
+        unit="m",
+        at_least=0.0,
+        at_most=10.0,
+    )
     lethal_cost: int = param(
         100, "map cost from which a cell is an obstacle", at_least=1, at_most=100
     )
@@ -46,4 +53,5 @@ class ExplorerParams(FrameParams):
             min_length_m=self.min_frontier_m,
             viewpoint_m=self.viewpoint_m,
             gain=self.frontier_gain,
+            passage_m=self.passage_m,
         )
