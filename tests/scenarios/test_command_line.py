@@ -109,7 +109,7 @@ def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
 @pytest.mark.slow
 def test_a_goal_that_is_not_reached_gives_another_exit_code(typed: Typed) -> None:
     code, printed, _ = typed(
-        "sim", "course", "--goal", "100", "0", "--headless", "--json"
+        "sim", "course", "--goal", "1000", "0", "--headless", "--json"
     )
     assert code == 1
     (goal,) = json.loads(printed)["goals"]

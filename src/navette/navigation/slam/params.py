@@ -11,7 +11,7 @@ MODES = MAPPING, LOCALIZATION = ("mapping", "localization")
 
 @dataclass(frozen=True, kw_only=True)
 class SlamParams(FrameParams):
-    """ScanMotion noise, scan matching, loop closure and the map."""
+    """Motion noise, scan matching, loop closure and the map."""
 
     odom_frame: str = param("odom", "frame of the odometry")
     start_x_m: float = param(0.0, "x of the robot in the map at the start")
