@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2
-from navette.navigation.grids import make_outline
+from navette.geometry import Pose2, angle_difference
+from navette.navigation.grids import exact_clearances, make_outline
 from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
@@ -26,6 +26,8 @@ from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.route import GridRouter
 from navette.navigation.planning.traversal import STRAIGHT
 
+# A route with fewer poses has no heading of its own; smaller turns are useless.
+_LEAST_ROUTE, _ALIGNED_RAD = 3, 0.01
 # Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
@@ -85,14 +87,16 @@ class DetourPlanner:
             found = self._search(np.empty((0, 3)), start, target)
             poses = found.poses if len(found.poses) else None
             return DetourResult(poses, found.expansions, found.exhausted)
-        before = self._usable_beginning(route)
-        found = self._search(before, start, target)
-        effort = found.expansions
-        if not len(found.poses) and len(before):
-            before = before[:0]
+        effort = 0
+        for beginning in (self._usable_beginning(route), _poses(start)):
+            if not len(beginning):
+                continue
+            before = self._aligned(beginning, route)
             found = self._search(before, start, target)
             effort += found.expansions
-        if not len(found.poses):
+            if len(found.poses):
+                break
+        else:
             return DetourResult(None, effort, found.exhausted)
         poses = self._with_route_after(found.poses, target)
         poses = self._turned_to_goal(poses, target)
@@ -119,6 +123,33 @@ class DetourPlanner:
         left = np.cumsum(path_shape.lengths(route[: bad + 1])[::-1])[::-1]
         usable = np.flatnonzero(roomy & (left >= self.body.circumscribed_m))
         return route[: usable[-1] + 1] if len(usable) else nothing
+
+    def _aligned(self, before: Poses, route: Poses | None) -> Poses:
+        """Return the poses with a turn in place to a heading of the tightest place.
+
+        The search has few headings, counted from its first: without that of a narrow
+        passage among them, the body may not fit along it. Only where paths are centred
+        in tight places, too.
+        """
+        if not self.router.centres or route is None or len(route) < _LEAST_ROUTE:
+            return before
+        clearance = exact_clearances(
+            self.grid.exact_obstacles,
+            make_outline(self.body.footprint),
+            route,
+            self.body.circumscribed_m,
+        )
+        x, y, yaw = before[-1].tolist()
+        step = self.motions.heading_step
+        off = angle_difference(float(route[np.argmin(clearance), 2]), yaw)
+        off -= step * round(off / step)
+        if abs(off) < _ALIGNED_RAD:
+            return before
+        turn = turn_in_place(x, y, yaw, yaw + off)
+        fits = check_path(
+            np.concatenate([before[-1:], turn]), self.grid, self.body
+        ).fits
+        return joined(before, turn) if fits else before
 
     def _has_room(self, poses: Poses) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
         """Return at which poses the body can turn in place."""
@@ -201,3 +232,8 @@ class DetourPlanner:
         if route is None or not check_path(route, self.grid, self.body).fits:
             return None
         return joined(poses[: i + 1], route)
+
+
+def _poses(pose: Pose2) -> Poses:
+    """Return the pose as the only one of a path."""
+    return np.array([[pose.x, pose.y, pose.yaw]])

@@ -1,0 +1,45 @@
+"""Headings of the search for detours."""
+
+import math
+
+import numpy as np
+import pytest
+from planning_worlds import empty_map
+
+from navette.geometry import Pose2
+from navette.navigation.planning import Planner, PlannerParams
+from navette.navigation.planning.detour import DetourPlanner
+from navette.navigation.planning.route import GridRouter
+
+PARAMS = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
+
+
+def detour_planner(*, centres: bool) -> DetourPlanner:
+    planner = Planner(PARAMS)
+    occupancy, spec = empty_map(6, 6)
+    planner.set_map(occupancy, spec)
+    router = GridRouter(PARAMS, centres=centres)
+    unseen = np.zeros(spec.shape, np.uint8)
+    return DetourPlanner(planner.grid(), planner.body, PARAMS, router, unseen)
+
+
+@pytest.mark.parametrize("yaw", [-0.14, -0.05, 0.03, 0.1, 1.7])
+def test_a_passage_is_among_the_headings_of_the_search(yaw: float) -> None:
+    """The robot turns by less than half the angle between two headings before it."""
+    detour = detour_planner(centres=True)
+    route = np.column_stack([np.linspace(1, 5, 40), np.full(40, 3.0), np.zeros(40)])
+    start = np.array([[1.0, 3.0, yaw]])
+    aligned = detour._aligned(start, route)
+    step = detour.motions.heading_step
+    assert math.remainder(aligned[-1, 2], step) == pytest.approx(0.0, abs=0.011)
+    assert abs(aligned[-1, 2] - yaw) <= step / 2 + 1e-9
+    np.testing.assert_array_equal(
+        aligned[:, :2], np.tile(start[0, :2], (len(aligned), 1))
+    )
+
+
+def test_where_there_is_room_the_search_begins_with_the_robots_heading() -> None:
+    detour = detour_planner(centres=False)
+    route = detour.router.route(detour.grid, detour.body, Pose2(1, 3, 0), (5, 3))
+    start = np.array([[1.0, 3.0, -0.14]])
+    assert detour._aligned(start, route) is start
