@@ -119,7 +119,7 @@ export class PlotPanel implements PanelInstance {
 
   #changed(): void {
     this.context.settings.set("paths", this.#curves.map(({ text }) => text));
-    this.context.setTitle(this.#curves.length === 0 ? "Plot" : `Plot: ${this.#curves.map(({ path }) => path.steps.at(-1)).join(", ")}`);
+    this.context.setTitle(this.#curves.length === 0 ? "Plot" : `Plot: ${titleOf(this.#curves.map(({ path }) => path))}`);
     this.#empty.element.hidden = this.#curves.length > 0;
     this.#chart.hidden = this.#curves.length === 0;
     this.#legend.hidden = this.#curves.length === 0;
@@ -284,6 +284,12 @@ export class PlotPanel implements PanelInstance {
     canvas.toBlob((blob) => blob && download("navette-plot.png", blob, "image/png"));
     this.context.announce("Plot saved as PNG");
   }
+}
+
+/** The field of one number, the topics of several. */
+function titleOf(paths: readonly FieldPath[]): string {
+  if (paths.length === 1) return paths[0]!.steps.slice(-2).join(".");
+  return [...new Set(paths.map(({ topic }) => topic.slice(1)))].join(", ");
 }
 
 function paddedRange(low: number | null, high: number | null): [number, number] {

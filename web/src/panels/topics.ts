@@ -45,7 +45,7 @@ class TopicsPanel implements PanelInstance {
       h("th", { scope: "col", class: "topics-number" }, "Bandwidth"), h("th", { scope: "col", class: "topics-ends" }, "Ends"));
     this.#table = h("table", { class: "topics-table" }, h("thead", {}, head), this.#body);
     container.append(h("div", { class: "panel" }, h("div", { class: "bar" }, this.#filter, this.#count),
-      h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Topics" }, this.#table, this.#empty.element)));
+      h("div", { class: "body topics-body", tabindex: "0", role: "region", "aria-label": "Topics" }, this.#table, this.#empty.element)));
     this.#ends.push(this.connection.on("topics", () => this.#list()), this.connection.on("status", () => this.#list()));
     this.#list();
   }
