@@ -1,0 +1,88 @@
+"""The flood over poses of the body against what geometry gives."""
+
+import numpy as np
+import pytest
+
+from navette.geometry import Footprint, Pose2
+from navette.navigation.grids import GridSpec
+from navette.navigation.planning.body_space import BodySpace
+from navette.navigation.planning.close_look import close_map
+
+BODY = Footprint(((0.5, 0.2), (-0.5, 0.2), (-0.5, -0.2), (0.5, -0.2)))
+START = Pose2(1.0, 2.0, 0.0)
+
+
+def wall(gap_m: float, grid_yaw: float = 0.0) -> tuple[np.ndarray, GridSpec]:
+    """A wall across a room of 4 m, with a gap in its middle."""
+    spec = GridSpec(0.02, 200, 200, Pose2(0.0, 0.0, grid_yaw))
+    lethal = np.zeros(spec.shape, np.bool_)
+    lethal[:, 100:104] = True
+    half = round(gap_m / 2 / spec.resolution)
+    lethal[100 - half : 100 + half, 100:104] = False
+    return lethal, spec
+
+
+def beyond(gap_m: float, margin_m: float | None, grid_yaw: float = 0.0) -> bool:
+    lethal, spec = wall(gap_m, grid_yaw)
+    start = spec.origin @ START
+    space = BodySpace(lethal, spec, BODY, start, margin_m=margin_m)
+    return bool(space.reached_from(np.array([space.start]))[100, 160])
+
+
+@pytest.mark.parametrize("grid_yaw", [0.0, 0.7])
+@pytest.mark.parametrize(
+    ("gap_m", "margin_m", "passes"),
+    [
+        (0.36, None, False),  # narrower than the body
+        (0.52, None, True),
+        (0.44, 0.03, False),
+        (0.52, 0.03, True),
+    ],
+)
+def test_a_gap_is_passed_if_the_body_fits_through(
+    gap_m: float, margin_m: float | None, passes: bool, grid_yaw: float
+) -> None:
+    assert beyond(gap_m, margin_m, grid_yaw) == passes
+
+
+def test_from_within_an_enclosure_nothing_outside_is_reached() -> None:
+    spec = GridSpec(0.05, 80, 80)
+    lethal = np.zeros(spec.shape, np.bool_)
+    lethal[20:60, 20:60] = True
+    lethal[21:59, 21:59] = False
+    space = BodySpace(lethal, spec, BODY, Pose2(0.6, 0.6, 0.0))
+    inside = space.reached_from(np.array([[40, 40]]))
+    assert inside[40, 40]
+    assert not inside[:20].any()
+    assert not inside[:, 60:].any()
+    both = space.reached_from(np.array([[40, 40], space.start]))
+    outside = space.reached_from(np.array([space.start]))
+    np.testing.assert_array_equal(both, inside | outside)
+
+
+def test_the_start_is_open_even_within_an_obstacle() -> None:
+    spec = GridSpec(0.05, 40, 40)
+    space = BodySpace(np.ones(spec.shape, np.bool_), spec, BODY, Pose2(1, 1, 0))
+    reached = space.reached_from(np.array([space.start]))
+    assert reached.sum() == 1
+
+
+def test_a_close_map_has_obstacles_only_where_beams_ended() -> None:
+    """Cells of 0.1 m that beams measured become free but for the points in them."""
+    spec = GridSpec(0.1, 60, 60, Pose2(-3.0, -3.0, 0.0))
+    occupancy = np.zeros(spec.shape, np.int8)
+    occupancy[30, 20:40] = 100
+    occupancy[10, 10] = 100  # not measured: stays
+    hits = np.column_stack([np.arange(-0.99, 0.99, 0.01), np.full(198, 0.03)])
+    ends = np.array([(-2.0, -1.0), (2.0, 1.0)])
+    closer = close_map(occupancy, spec, hits, 100, ends, 0.6)
+    fine = closer.spec
+    assert fine.resolution == pytest.approx(0.025)
+    rows = np.flatnonzero((closer.occupancy == 100).any(axis=1))
+    y = [fine.center_of(int(row), 0)[1] for row in rows]
+    wall_rows = [each for each in y if abs(each) < 0.2]
+    assert wall_rows == [pytest.approx(0.0375)], "one row of 2.5 cm, not of 10 cm"
+    lonely = fine.cell_of(*spec.center_of(10, 10))
+    assert closer.occupancy[lonely] == 100
+    for x, y_ in ends.tolist():
+        assert fine.contains(*fine.cell_of(x, y_))
