@@ -37,12 +37,12 @@ class Shot(NamedTuple):
 
 SHOTS = (
     Shot(
-        "page.png", "0:24", 1440, 900, 1.5, "navette.open('plot'); navette.open('tree')"
+        "page.png", "0:20", 1440, 900, 1.5, "navette.open('plot'); navette.open('tree')"
     ),
     Shot(
-        "page-3d.png", "0:30", 1280, 720, 1.5, "navette.scene.setThreeDimensional(true)"
+        "page-3d.png", "0:26", 1280, 720, 1.5, "navette.scene.setThreeDimensional(true)"
     ),
-    Shot("page-phone.png", "0:36", 390, 780, 2.0),
+    Shot("page-phone.png", "0:32", 390, 780, 2.0),
 )
 
 
@@ -90,12 +90,14 @@ def capture(address: str, folder: str) -> None:
         browser.wait()
 
 
-def _open(
-    browser: Browser, address: str, width: int, height: int, scale: float
-) -> None:
+def _open(browser: Browser, address: str, size: tuple[int, int], scale: float) -> None:
+    width, height = size
     metrics = {"width": width, "height": height, "deviceScaleFactor": scale}
     browser.call("Emulation.setDeviceMetricsOverride", **metrics, mobile=width < 700)
     browser.call("Page.navigate", url="about:blank")
+    browser.call(
+        "Storage.clearDataForOrigin", origin=address, storageTypes="local_storage"
+    )
     browser.call("Page.navigate", url=address)
 
 
@@ -112,13 +114,13 @@ def _pause(browser: Browser, seconds: float) -> None:
 
 def _take(browser: Browser, address: str, shot: Shot) -> None:
     _open(browser, address, (shot.width, shot.height), shot.scale)
-    _pause(browser, 2.0)
+    _pause(browser, 5.0)
     browser.evaluate(shot.script)
+    _pause(browser, 12.0)  # plots fill
     clock = "document.querySelector('#clock')?.textContent ?? ''"
     while (browser.evaluate(clock) or "") < shot.moment:
         _pause(browser, 0.2)
     (IMAGES / shot.name).write_bytes(_picture(browser))
-    browser.evaluate("localStorage.clear()")
 
 
 def _film(browser: Browser, address: str) -> None:

@@ -20,12 +20,16 @@ _IS_CONTACT[[_BODY + _GROUND, _BODY + _OBSTACLE, _STANDS + _OBSTACLE]] = True
 
 @dataclass(frozen=True)
 class ContactEpisode:
-    """A contact of the robot's link ``part`` with an obstacle."""
+    """A contact of the robot's link ``part`` with an obstacle.
+
+    ``place`` is where they met first, in metres of the world.
+    """
 
     start_ns: int
     end_ns: int
     part: str
     obstacle: str
+    place: tuple[float, float, float]
 
 
 class ContactMonitor:
@@ -58,18 +62,21 @@ class ContactMonitor:
         bad = _IS_CONTACT[kind[:, 0] + kind[:, 1]]
         if not bad.any():
             return False
-        for pair in pairs[bad]:
+        for pair, (x, y, z) in zip(pairs[bad], data.contact.pos[bad], strict=True):
             mine, other = pair if self._robot[pair[0]] else pair[::-1]
-            self._note(self._owner[mine], self._owner[other], now_ns)
+            place = (float(x), float(y), float(z))
+            self._note(self._owner[mine], self._owner[other], place, now_ns)
         return True
 
-    def _note(self, part: str, obstacle: str, now_ns: int) -> None:
+    def _note(
+        self, part: str, obstacle: str, place: tuple[float, float, float], now_ns: int
+    ) -> None:
         index = self._open.get(obstacle)
         if index is not None and now_ns - self.episodes[index].end_ns <= _GAP_NS:
             self.episodes[index] = replace(self.episodes[index], end_ns=now_ns)
             return
         self._open[obstacle] = len(self.episodes)
-        self.episodes.append(ContactEpisode(now_ns, now_ns, part, obstacle))
+        self.episodes.append(ContactEpisode(now_ns, now_ns, part, obstacle, place))
 
 
 def _stands(compiled: Compiled, data: mujoco.MjData) -> NDArray[np.bool_]:

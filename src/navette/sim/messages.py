@@ -173,11 +173,18 @@ def camera_info_message(sensor: CameraSensor, stamp_ns: int, frame: str) -> Came
     )
 
 
-def contact_message(episode: ContactEpisode, count: int) -> DiagnosticStatus:
-    """Diagnostics of a new contact: link, obstacle, time and number of contacts."""
+def contact_message(
+    episode: ContactEpisode, count: int, frame: str
+) -> DiagnosticStatus:
+    """Diagnostics of a new contact: link, obstacle, place, time, number of contacts."""
+    x, y, z = episode.place
     values = {
         "part": episode.part,
         "obstacle": episode.obstacle,
+        "frame": frame,
+        "x_m": f"{x:.3f}",
+        "y_m": f"{y:.3f}",
+        "z_m": f"{z:.3f}",
         "time_s": f"{episode.start_ns / 1e9:.3f}",
         "count": str(count),
     }

@@ -310,7 +310,9 @@ class SimNode(StageNode):
             self.get_logger().warning(
                 f"contact: {episode.part} touched {episode.obstacle}"
             )
-            contact = messages.contact_message(episode, number + 1)
+            contact = messages.contact_message(
+                episode, number + 1, self.params.map_frame
+            )
             self.publish(topics.CONTACTS.name, contact)
         self._contacts_reported = len(episodes)
 

@@ -273,7 +273,11 @@ def test_contacts_are_reported() -> None:
     run.spin(4.0)
     (reported,) = run.received["/contacts"]
     assert "robot/chassis touched box" in reported.message
-    assert {pair.key for pair in reported.values} >= {"part", "obstacle", "time_s"}
+    facts = {pair.key: pair.value for pair in reported.values}
+    assert set(facts) >= {"part", "obstacle", "time_s", "frame"}
+    # The box begins 2.5 m ahead.
+    assert float(facts["x_m"]) == pytest.approx(2.5, abs=0.02)
+    assert abs(float(facts["y_m"])) < 0.55  # a corner of the chassis
     assert run.sim.simulator.contacts.count == 1
 
 

@@ -7,6 +7,11 @@ import {
   SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
   type Material, type Object3D, type Texture,
 } from "three";
+import { Line2 } from "three/examples/jsm/lines/Line2.js";
+import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import type { Transform } from "../transforms/transform";
 import { rgba, type Colour, type Label, type Lines, type Points as PointSet, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import type { DrawItem, Ray, Renderer, Viewpoint } from "./renderer";
@@ -179,19 +184,30 @@ function pointsOf({ positions, colours, colour, sizePx }: PointSet): Built {
 /** sRGB bytes as linear light. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, byte) => new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r);
 
-function linesOf({ positions, mode, colour, fill }: Lines): Built {
-  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
-  const material = new LineBasicMaterial();
-  paint(material, colour);
-  const Kind = { strip: Line, loop: LineLoop, segments: LineSegments }[mode];
+/** Lines of more than a pixel are strips of triangles: WebGL draws its own lines one pixel wide. */
+function linesOf({ positions, mode, colour, fill, widthPx }: Lines): Built {
   const group = new Group();
-  group.add(new Kind(geometry, material));
-  const materials: Material[] = [material];
+  const materials: Material[] = [];
+  if (widthPx > 1.2 && positions.length >= 6) {
+    const material = new LineMaterial({ linewidth: widthPx });
+    paint(material, colour);
+    const closed = mode === "loop" ? [...positions, ...positions.subarray(0, 3)] : positions;
+    group.add(mode === "segments"
+      ? new LineSegments2(new LineSegmentsGeometry().setPositions(positions), material)
+      : new Line2(new LineGeometry().setPositions(closed), material));
+    materials.push(material);
+  } else {
+    const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
+    const material = new LineBasicMaterial();
+    paint(material, colour);
+    const Kind = { strip: Line, loop: LineLoop, segments: LineSegments }[mode];
+    group.add(new Kind(geometry, material));
+    materials.push(material);
+  }
   if (fill) {
     const inner = flat({ side: DoubleSide });
     paint(inner, fill);
-    const area = areaOf(positions);
-    group.add(new Mesh(area, inner));
+    group.add(new Mesh(areaOf(positions), inner));
     materials.push(inner);
   }
   return wrap(group, null, materials);
@@ -288,7 +304,7 @@ function colourOf(colour: Colour): Color {
   return new Color().setRGB(r / 255, g / 255, b / 255, SRGBColorSpace);
 }
 
-function paint(material: MeshBasicMaterial | MeshLambertMaterial | LineBasicMaterial | PointsMaterial, colour: Colour): void {
+function paint(material: MeshBasicMaterial | MeshLambertMaterial | LineBasicMaterial | LineMaterial | PointsMaterial, colour: Colour): void {
   material.color.copy(colourOf(colour));
   material.userData["opacity"] = rgba(colour)[3];
 }

@@ -105,11 +105,13 @@ export class ContactsDisplay extends Display<DiagnosticStatus> {
 
   protected override take(value: DiagnosticStatus): void {
     const facts = valuesOf(value);
-    const [x, y] = [Number(facts["x_m"] ?? NaN), Number(facts["y_m"] ?? NaN)];
-    const base = this.whereBase();
-    if (!base) return;
-    const place = Number.isFinite(x) && Number.isFinite(y) ? { ...IDENTITY, translation: [x, y, 0] as const } : base.pose;
-    this.#contacts.push({ frame: facts["frame"] ?? base.frame, place, text: value.message });
+    const [x, y, z] = [Number(facts["x_m"]), Number(facts["y_m"]), Number(facts["z_m"] ?? 0)];
+    const isPlaced = facts["frame"] !== undefined && Number.isFinite(x + y + z);
+    const base = this.whereBase(); // of a robot that reports no place
+    const place: Transform | undefined = isPlaced ? { ...IDENTITY, translation: [x, y, z] } : base?.pose;
+    const frame = isPlaced ? facts["frame"] : base?.frame;
+    if (place === undefined || frame === undefined) return;
+    this.#contacts.push({ frame, place, text: value.message });
     if (this.#contacts.length > 500) this.#contacts.shift();
   }
 
