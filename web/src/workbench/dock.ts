@@ -20,7 +20,7 @@ export interface Arrangement {
 
 const SCENE = "scene";
 const EDGES = { left: "left", right: "right", below: "bottom" } as const;
-const SIZES = { left: 300, right: 340, below: 260 };
+const SIZES = { left: 300, right: 380, below: 260 };
 
 export class Dock implements Arrangement {
   readonly element = h("div", { class: "dock" });
