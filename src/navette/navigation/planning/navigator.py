@@ -234,14 +234,14 @@ class Navigator:
         now_ns: int,
         *,
         stale: bool,
-        lost: bool = False,
+        unlocated: Outcome | Phase | None = None,
     ) -> None:
         """Look after the goal.
 
         Args:
             robot: newest state; None before the first.
             stale: whether that is too old to drive by.
-            lost: whether its pose is not that of the robot.
+            unlocated: why that is not the pose of the robot; None: it is.
         """
         if self._goal is None or self.is_paused:
             return
@@ -250,9 +250,9 @@ class Navigator:
             self._compared_ns = now_ns
         self._stepped_ns = now_ns
         self.planner.hold(self._goal)
-        if lost:
+        if unlocated is not None:
             self._drop_path()
-            self._set_status(Outcome.LOST)
+            self._set_status(unlocated)
         elif robot is None or stale:
             self._drop_path()
             self._set_status(Phase.WAITING_FOR_ODOMETRY if robot is None

@@ -72,8 +72,11 @@ _STALLED = "stalled"
 _MOVING_TIMEOUT_S = 0.5
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
-# Status of a localization node that has the pose.
-_LOCALIZED = "localized"
+# Status of a localization node → why the goal waits; of any other: it is localizing.
+_UNLOCATED: dict[str, Outcome | Phase | None] = {
+    "localized": None,
+    "lost": Outcome.LOST,
+}
 
 
 class PlannerNode(StageNode):
@@ -171,7 +174,7 @@ class PlannerNode(StageNode):
         self._step_is_due = False
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
-        self._is_lost = False
+        self._unlocated: Outcome | Phase | None = None
         self._zones: KeepOutZones | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
@@ -277,16 +280,18 @@ class PlannerNode(StageNode):
             self._when_stepped(lambda: self._navigator.note_jump())
             self.on_timer()
         robot = self._robot()
-        if robot is None or self._is_lost or self._stepping is not None:
+        if robot is None or self._unlocated or self._stepping is not None:
             return
         if self._navigator.note(robot, self._now_ns):
             self._publish_path_and_status()
 
     def on_localization_status(self, msg: DiagnosticStatus) -> None:
         """Stop a robot that is lost; continue when it is localized again."""
-        is_lost = msg.message != _LOCALIZED
-        if is_lost != self._is_lost:
-            self._is_lost = is_lost
+        before, self._unlocated = (
+            self._unlocated,
+            _UNLOCATED.get(msg.message, Phase.LOCALIZING),
+        )
+        if self._unlocated is not before:
             self._drop_step()
             self.on_timer()
 
@@ -380,9 +385,9 @@ class PlannerNode(StageNode):
         self._navigator.planner.set_moving(moving)
         self._stepping = stepping = self._navigator.copy()
         robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
-        lost = self._is_lost
+        unlocated = self._unlocated
         self._worker.run(
-            lambda: stepping.step(robot, now_ns, stale=stale, lost=lost),
+            lambda: stepping.step(robot, now_ns, stale=stale, unlocated=unlocated),
             lambda _: self._finish_step(stepping),
             is_dropped=lambda: self._stepping is not stepping,
         )
@@ -467,7 +472,7 @@ class PlannerNode(StageNode):
         return None if self._map is None else self._navigator.planner
 
     def _fresh_pose(self) -> Pose2 | None:
-        return None if self._is_lost or self._is_stale() else self._tracker.latest
+        return None if self._unlocated or self._is_stale() else self._tracker.latest
 
     def _is_stale(self) -> bool:
         if self._odometry_ns is None:

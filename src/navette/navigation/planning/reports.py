@@ -21,6 +21,7 @@ class Phase(StrEnum):
     WAITING_FOR_GOAL = "waiting_for_goal"
     WAITING_FOR_MAP = "waiting_for_map"
     WAITING_FOR_ODOMETRY = "waiting_for_odometry"
+    LOCALIZING = "localizing"
     PLANNING = "planning"
     FOLLOWING = "following"
     PAUSED = "paused"

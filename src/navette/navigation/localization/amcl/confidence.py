@@ -7,6 +7,8 @@ from navette.navigation.localization.amcl.params import AmclParams
 # Least weight of the heaviest cluster of a robot that is localized; below the second
 # value another place is as likely.
 _LEAST_SHARE, _LOST_SHARE = 0.85, 0.5
+# Scans in a row that confirm a pose.
+_GOOD_SCANS = 3
 
 
 class LocalizationState(StrEnum):
@@ -14,7 +16,7 @@ class LocalizationState(StrEnum):
 
     NO_MAP = "no_map"
     LOCALIZING = "localizing"
-    """The pose is searched for on the whole map; the robot has to move."""
+    """A given pose is not confirmed yet, or the whole map is searched."""
 
     LOCALIZED = "localized"
     LOST = "lost"
@@ -26,16 +28,14 @@ class ConfidenceMonitor:
 
     def __init__(self, params: AmclParams) -> None:
         self._params = params
+        self.restart(is_given=False)
+
+    def restart(self, *, is_given: bool) -> None:
+        """Restart at a given pose, which scans have to confirm, or without one."""
         self.state = LocalizationState.LOCALIZING
+        self._is_given = is_given
         self._poor_since_ns: int | None = None
         self._good = 0
-
-    def restart(self, *, is_known: bool) -> None:
-        """Restart at a given pose, or without one."""
-        self.state = (
-            LocalizationState.LOCALIZED if is_known else LocalizationState.LOCALIZING
-        )
-        self._poor_since_ns, self._good = None, 0
 
     def update(
         self, match: float, stddev_m: float, share: float, now_ns: int
@@ -55,15 +55,7 @@ class ConfidenceMonitor:
                 or stddev_m > params.lost_stddev_m
                 or share < _LOST_SHARE
             )
-            if not poor:
-                self._poor_since_ns = None
-            elif self._poor_since_ns is None:
-                self._poor_since_ns = now_ns
-            if (
-                self._poor_since_ns is not None
-                and now_ns - self._poor_since_ns >= params.lost_time_s * 1e9
-            ):
-                self.state, self._good = LocalizationState.LOST, 0
+            self._note(poor, now_ns)
             return self.state
         good = (
             match >= params.localized_match
@@ -71,6 +63,18 @@ class ConfidenceMonitor:
             and share >= _LEAST_SHARE
         )
         self._good = self._good + 1 if good else 0
-        if self._good >= 3:
+        if self._good >= _GOOD_SCANS:
             self.state, self._poor_since_ns = LocalizationState.LOCALIZED, None
+        elif self._is_given:
+            self._note(not good, now_ns)
         return self.state
+
+    def _note(self, is_poor: bool, now_ns: int) -> None:
+        """Count the time of poor scans; after some the robot is lost."""
+        if not is_poor:
+            self._poor_since_ns = None
+        elif self._poor_since_ns is None:
+            self._poor_since_ns = now_ns
+        elif now_ns - self._poor_since_ns >= self._params.lost_time_s * 1e9:
+            self.state, self._good = LocalizationState.LOST, 0
+            self._is_given = False

@@ -87,18 +87,21 @@ class MapLocalizer:
         self._updated: ScanView | None = None  # scan of the last update
         self._searched_ns = -_SEARCH_NS
         self._map_T_odom: Pose2 | None = None
+        self._is_given = False  # the pose, and no scan has contradicted it yet
 
     def set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
         """Continue from a pose; covariance (3, 3) of x, y, yaw."""
         self.filter.set_pose(pose, covariance)
-        self.confidence.restart(is_known=True)
+        self.confidence.restart(is_given=True)
+        self._is_given = True
         self._updated = None
 
     def locate_globally(self) -> None:
         """Forget the pose; the next scan begins a search of the whole map."""
         self.filter.particles = np.empty((0, 3))
         self.filter.weights = np.empty(0)
-        self.confidence.restart(is_known=False)
+        self.confidence.restart(is_given=False)
+        self._is_given = False
         self._updated = None
 
     def request_update(self) -> None:
@@ -146,9 +149,11 @@ class MapLocalizer:
             match, estimate.stddev_m, estimate.share, scan.stamp_ns
         )
         localized = LocalizationState.LOCALIZED
-        if state is localized and (is_updated or before is not localized):
+        is_new = is_updated or before is not localized
+        if (state is localized and is_new) or (self._is_given and is_updated):
             self._map_T_odom = map_T_odom
         if state is LocalizationState.LOST:
+            self._is_given = False
             self._search(scan)
         return Located(state, estimate, self._map_T_odom, match, is_updated)
 
