@@ -10,6 +10,13 @@ from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.sim.params import SimParams
 
+# Variances per second. Of the pose: slip of the wheels, which no sensor measures; its
+# other errors are those of the velocities.
+_PROCESS_NOISE = (
+    *(1e-4, 1e-4, 0.0, 0.0, 0.0, 2e-5),
+    *(2.0, 0.01, 0.0, 0.0, 0.0, 4.0),
+    *(1.0, 1.0, 0.0),
+)
 _ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
 
 
@@ -31,7 +38,8 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "odom0": topics.WHEEL_ODOMETRY.name,
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
             "imu0": topics.IMU.name,
-            "imu0_config": [name in ("yaw", "vyaw") for name in _ORDER],
+            "imu0_config": [name == "vyaw" for name in _ORDER],
+            "process_noise_covariance": list(_PROCESS_NOISE),
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
         },
         "amcl": {
