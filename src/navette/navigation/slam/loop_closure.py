@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import angle_difference
+from navette.geometry import Pose2, angle_difference
 from navette.navigation.slam.correlative import SearchWindow, search
 from navette.navigation.slam.motion import inverted
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.pose_graph import GraphEdge
-from navette.navigation.slam.refinement import refine
+from navette.navigation.slam.refinement import Refined, refine
 from navette.navigation.slam.scan_graph import ScanChunk, ScanGraph
 from navette.navigation.slam.scan_points import Points
 from navette.navigation.slam.tracking import SIGMAS, LocalMap
@@ -37,6 +37,11 @@ _AGREE_PER_M = 0.03
 _FLOOR = np.diag([0.02**2, 0.02**2, 0.005**2])
 # Information along a corridor, so that it can be inverted.
 _WEAKEST = np.eye(3)
+# Shifts of a match along its weakest direction, and the share of its score that another
+# place must not reach.
+_SLIDES_M = (-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0)
+_SLIDE_WINDOW = SearchWindow(0.5, 0.05)
+_ALIKE = 0.85
 # Points of the newest key scans that are searched for.
 _SAMPLE = 400
 
@@ -143,7 +148,10 @@ class LoopFinder:
             softened(refined.information + _WEAKEST, _FLOOR),
             True,
         )
-        return Closure(edge, window, refined.overlap, query)
+        closure = Closure(edge, window, refined.overlap, query)
+        if not closure.is_certain and _slides(local, sample, refined, found.score):
+            return None
+        return closure
 
     def _confirm(self, closure: Closure, graph: ScanGraph) -> list[GraphEdge]:
         """Return the pending closures that agree with this one, and this one."""
@@ -169,6 +177,24 @@ def softened(information: Matrix, floor: Matrix) -> Matrix:
     """Return the information of a measurement with an additional covariance."""
     result: Matrix = inverted(inverted(information) + floor)
     return result
+
+
+def _slides(local: LocalMap, sample: Points, refined: Refined, score: float) -> bool:
+    """Whether the scans fit nearly as well elsewhere along the weakest direction.
+
+    In a corridor whose doors look alike, the best place is not the right one.
+    """
+    _, directions = np.linalg.eigh(refined.information[:2, :2])
+    x, y = directions[:, 0]
+    for step in _SLIDES_M:
+        pose = refined.pose
+        moved = Pose2(pose.x + step * x, pose.y + step * y, pose.yaw)
+        found = search(
+            local.grid, sample, moved, _SLIDE_WINDOW, min_score=_ALIKE * score
+        )
+        if found is not None:
+            return True
+    return False
 
 
 def _agree(one: GraphEdge, other: GraphEdge, graph: ScanGraph) -> bool:
