@@ -66,9 +66,18 @@ async function goals() {
   const start = await pose();
   await until(page, ([x, y]) => {
     const [rx, ry] = navette.transforms.lookUp("map", "base_link").translation;
-    return Math.hypot(rx - x, ry - y) > 1.5;
+    return Math.hypot(rx - x, ry - y) > 0.8;
   }, start);
   const answer = () => page.textContent("#answer");
+  await page.evaluate(() => {
+    window.reached = [];
+    navette.connection.subscribe("/planner/status", { every: true }, ({ value: { message, values } }) => {
+      if (message !== "reached") return;
+      const [x, y] = ["goal_x", "goal_y"].map((wanted) => Number(values.find(({ key }) => key === wanted).value));
+      const [rx, ry] = navette.transforms.lookUp("map", "base_link").translation;
+      reached.push({ x, y, missed: Math.hypot(rx - x, ry - y) });
+    });
+  });
   await page.mouse.click(...await pixelOf(start));
   await until(page, () => /sent/.test(document.querySelector("#answer").textContent));
   seen.clicked = await answer();
@@ -80,15 +89,9 @@ async function goals() {
   await page.mouse.up();
   await until(page, (before) => document.querySelector("#answer").textContent !== before, seen.clicked);
   seen.withHeading = await answer();
-  await page.evaluate(() => {
-    navette.connection.subscribe("/planner/status", {}, ({ value }) => { window.planner = value; });
-  });
-  await page.waitForFunction(([x, y]) => {
-    const values = Object.fromEntries((window.planner?.values ?? []).map(({ key, value }) => [key, value]));
-    return window.planner?.message === "reached" && Math.hypot(values.goal_x - x, values.goal_y - y) < 0.4;
-  }, start, { timeout: 240_000, polling: 200 });
-  const [x, y] = await pose();
-  seen.missed = Math.hypot(x - start[0], y - start[1]);
+  // The demo's own goals follow at once: each report counts.
+  const arrival = await page.waitForFunction(([x, y]) => reached.find((each) => Math.hypot(each.x - x, each.y - y) < 0.6), start, { timeout: 90_000, polling: 200 });
+  seen.missed = (await arrival.jsonValue()).missed;
 }
 
 async function panels() {
