@@ -11,8 +11,6 @@ from navette.runtime.parameter import parameter_value_to_python
 
 # Distance of a goal from obstacles beyond the body's half width.
 _MARGIN_M = 0.15
-# The same on the way to a goal: the planner passes narrower doors.
-_PASSING_M = 0.05
 _NAMES = ("map_frame", "base_frame", "footprint_m")
 
 
@@ -35,7 +33,7 @@ def make_explorer(context: Context, planner_values: Sequence[Any]) -> ExplorerNo
         "map_frame": map_frame,
         "base_frame": base_frame,
         "clearance_m": radius_m + _MARGIN_M,
-        "passage_m": radius_m + _PASSING_M,
+        "passage_m": radius_m,  # whether the body fits is for the planner to decide
     }
     overrides: list[Parameter[Any]] = [
         Parameter(name, value=value) for name, value in values.items()
