@@ -149,7 +149,7 @@ class LoopFinder:
             True,
         )
         closure = Closure(edge, window, refined.overlap, query)
-        if not closure.is_certain and _slides(local, sample, refined, found.score):
+        if not closure.is_certain and slides(local, sample, refined, found.score):
             return None
         return closure
 
@@ -179,7 +179,7 @@ def softened(information: Matrix, floor: Matrix) -> Matrix:
     return result
 
 
-def _slides(local: LocalMap, sample: Points, refined: Refined, score: float) -> bool:
+def slides(local: LocalMap, sample: Points, refined: Refined, score: float) -> bool:
     """Whether the scans fit nearly as well elsewhere along the weakest direction.
 
     In a corridor whose doors look alike, the best place is not the right one.
