@@ -158,6 +158,11 @@ class Simulation:
         located_by = [name for name, _ in localization_nodes(self.sim.params)]
         self.stack = NavigationStack.create(context, self._replacements, located_by)
         if options.keepout is not None or options.speed_zones is not None:
+            frames = {
+                name: getattr(self.sim.params, name)
+                for name in ("map_frame", "base_frame")
+            }
+            self._add_below("zones", frames, "frames of the robot")
             ZonesNode(context=context)
         self.viewer = (
             None
@@ -175,20 +180,26 @@ class Simulation:
     def _add_localization(self) -> None:
         """Add the parameters of the localization nodes, below all others."""
         start = self.sim.simulator.pose().to_pose2()
-        derived = ParameterOverrides()
         params = self.sim.params
         found = localization_parameters(params, start)
         for name, _ in localization_nodes(params):
             if name in found:
-                derived.add(name, found[name], f"localization {params.localization}")
-        sets = self.context.overrides.sets
-        self.context.overrides.sets = [*derived.sets, *sets]
+                origin = f"localization {params.localization}"
+                self._add_below(name, found[name], origin)
+
+    def _add_below(self, node: str, values: Mapping[str, Any], origin: str) -> None:
+        """Add parameters that all others override."""
+        derived = ParameterOverrides()
+        derived.add(node, values, origin)
+        overrides = self.context.overrides
+        overrides.sets = [*derived.sets, *overrides.sets]
 
     def _drop_overrides_of_replaced(self) -> None:
         """Drop the robot's parameters for nodes that are replaced."""
         overrides, present = self.context.overrides, self.context.nodes
         names = {node.get_fully_qualified_name() for node in present}
-        gone = {f"/{name}" for name in self._replacements} - names
+        # A robot's file has parameters of the localizer, which slam and amcl replace.
+        gone = {f"/{name}" for name in (*self._replacements, "localizer")} - names
         overrides.sets = [
             each
             for each in overrides.sets

@@ -1,0 +1,77 @@
+"""The switch between sources of the pose."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from navette.errors import ParameterError
+from navette.geometry import Pose2
+from navette.geometry.map_files import OccupancyMap, write_occupancy_map
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.simulation import Simulation
+
+NODES = {
+    "truth": {"localizer"},
+    "odometry": {"localizer"},
+    "slam": {"slam"},
+    "amcl": {"amcl"},
+}
+
+
+def simulation(localization: str, **options: object) -> Simulation:
+    given: dict[str, object] = {"methods": {"localization": localization}, **options}
+    return Simulation(RunOptions(world="course", headless=True, **given))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("localization", NODES)
+def test_each_source_starts_its_node_with_the_frames_of_the_robot(
+    localization: str,
+) -> None:
+    run = simulation(localization)
+    try:
+        names = {node.get_name() for node in run.context.nodes}
+        assert names & {"localizer", "slam", "amcl", "ekf"} == NODES[localization]
+        (node,) = run.stack.localization
+        is_amcl = localization == "amcl"
+        frame = node.get_parameter("global_frame_id" if is_amcl else "map_frame")
+        assert frame.value == "sim_world"
+        assert run.sim.params.odometry_frame == (
+            "odom" if localization in ("slam", "amcl") else "sim_world"
+        )
+        assert run.sim.params.wheel_stddev_m == (
+            0.0 if localization == "truth" else 0.01
+        )
+    finally:
+        run.close()
+
+
+def test_the_parameter_is_the_same_switch() -> None:
+    run = simulation("truth", parameters={"sim": {"localization": "slam"}})
+    try:
+        assert [node.get_name() for node in run.stack.localization] == ["slam"]
+    finally:
+        run.close()
+
+
+def test_a_filter_is_added_by_a_parameter() -> None:
+    run = simulation("slam", parameters={"sim": {"filters_odometry": True}})
+    try:
+        assert [node.get_name() for node in run.stack.localization] == ["ekf", "slam"]
+    finally:
+        run.close()
+
+
+def test_an_unknown_source_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(ParameterError, match="truth, odometry, slam, amcl"):
+        simulation("gps")
+
+
+def test_zones_have_the_frames_of_the_robot(tmp_path: Path) -> None:
+    mask = OccupancyMap(np.zeros((4, 4), np.int8), 1.0, Pose2(0.0, 0.0, 0.0))
+    run = simulation("truth", keepout=write_occupancy_map(tmp_path / "mask", mask))
+    try:
+        (zones,) = (node for node in run.context.nodes if node.get_name() == "zones")
+        assert zones.get_parameter("map_frame").value == "sim_world"
+    finally:
+        run.close()
