@@ -4,7 +4,6 @@ import type { Connection, Dispose, Message } from "../connection/connection";
 import type { Theme } from "../theme/theme";
 import type { Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
-import { nextFrame } from "../ui/frames";
 import type { Part } from "./primitives";
 
 /** What a user may change; `null`: as the display decides. */
@@ -65,6 +64,7 @@ export abstract class Display<T = unknown> {
   #parts: Part[] | null = null;
   #kept: { parts: Part[]; untilMs: number }[] = [];
   #end: Dispose | null = null;
+  #timer: ReturnType<typeof setTimeout> | undefined;
   #expected: string;
 
   constructor(
@@ -99,6 +99,8 @@ export abstract class Display<T = unknown> {
   dispose(): void {
     this.#end?.();
     this.#end = null;
+    clearTimeout(this.#timer);
+    this.#timer = undefined;
     this.clear();
   }
 
@@ -129,7 +131,7 @@ export abstract class Display<T = unknown> {
     if (this.#kept.length === 0) return this.#parts;
     const now = performance.now();
     this.#kept = this.#kept.filter(({ untilMs }) => untilMs > now);
-    if (this.#kept.length > 0) nextFrame(() => this.around.invalidate());
+    if (this.#kept.length > 0) this.later(100, () => this.around.invalidate());
     return [...this.#kept.flatMap(({ parts }) => parts), ...this.#parts];
   }
 
@@ -162,6 +164,14 @@ export abstract class Display<T = unknown> {
 
   protected isEmpty(): boolean {
     return this.parts().every(({ primitives }) => primitives.length === 0);
+  }
+
+  /** Act after a while; calls before it act once. */
+  protected later(delayMs: number, act: () => void): void {
+    this.#timer ??= setTimeout(() => {
+      this.#timer = undefined;
+      act();
+    }, delayMs);
   }
 
   protected abstract build(): Part[];

@@ -1,6 +1,5 @@
 /** visualization_msgs Marker and MarkerArray. */
 
-import { nextFrame } from "../../ui/frames";
 import { Display } from "../display";
 import { transformOf, type Marker } from "../messages";
 import { colourOf, type Colour, type Part, type Primitive } from "../primitives";
@@ -58,7 +57,7 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
       }
     }
     if ([...this.#markers.values()].some(({ untilMs }) => untilMs < Infinity)) {
-      setTimeout(() => nextFrame(() => this.restyle()), 250); // their lifetime ends without a message
+      this.later(250, () => this.restyle()); // their lifetime ends without a message
     }
     return [...byFrame].map(([frame, { primitives, names }]) => ({
       frame,
