@@ -30,7 +30,7 @@ class DistantStack:
         self.client = Node("client", context=here)
         self._executors = [Executor(context=here), Executor(context=there)]
         self._executors[0].add_node(self.client)
-        for node in (self.sim, *vars(stack).values()):
+        for node in (self.sim, *stack.nodes):
             self._executors[1].add_node(node)
         there.check_overrides()
 

@@ -143,6 +143,12 @@ class NavigationStack:
         )
 
     @property
+    def nodes(self) -> tuple[Node, ...]:
+        """All nodes in data-flow order."""
+        localization, *others = vars(self).values()
+        return (*localization, *others)
+
+    @property
     def cruise_speed_mps(self) -> float | None:
         """Cruise speed of the controller; None: it is not Navette's."""
         if isinstance(self.control, ControlNode):

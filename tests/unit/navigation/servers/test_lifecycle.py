@@ -46,7 +46,7 @@ class DrivingStack:
         )
         graph.add(sim)
         stack = NavigationStack.create(graph.context)
-        for node in vars(stack).values():
+        for node in stack.nodes:
             graph.add(node)
         self.odometry = graph.collect("/odom/filtered", Odometry)
         graph.run_for(1.0)
