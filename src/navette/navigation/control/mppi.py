@@ -14,6 +14,7 @@ give equal commands. A command is speed and turn rate, speed and curvature (Acke
 or speed, speed to the left and turn rate (omnidirectional); see :mod:`.drive_models`.
 """
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -168,6 +169,21 @@ class Mppi:
             )
         self._average(candidates)
         return self._first_command()
+
+    def alternatives(self) -> Iterator[VelocityCommand]:
+        """Yield the first commands of candidates that cost less than standing still.
+
+        The cheapest comes first. The sequence continues from the one that is taken,
+        or from the mean when all are left.
+        """
+        mean, samples = self._commands, self._noise.shape[3]
+        standing = self._costs[samples + _MANOEUVRES.index((0.0, 0.0))]
+        for k in np.argsort(self._costs, kind="stable"):
+            if self._costs[k] >= standing:
+                break
+            self._commands = self._candidates[:, :, k].copy()
+            yield self._first_command()
+        self._commands = mean
 
     def _curvature(self, state: MotionState) -> float:
         """Return the curvature (1/m) to which an Ackermann drive is steered."""

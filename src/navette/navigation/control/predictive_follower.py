@@ -172,7 +172,24 @@ class PredictiveFollower(BaseFollower):
         )
         command = approach(last, wanted, params, dt)
         eased = self._gate.eased(command, inputs.ages)
-        return self._keep_clear(inputs.pose, eased)
+        output = self._keep_clear(inputs.pose, eased)
+        if output.state == ControlState.BLOCKED and last == STOP:
+            return self._free_start(inputs, dt) or output
+        return output
+
+    def _free_start(self, inputs: FollowerInputs, dt: float) -> FollowerOutput | None:
+        """Start with the cheapest candidate that the obstacles allow; None: stand.
+
+        At rest their mean can be refused at every step alike: between the points that
+        represent the body in rollouts, a post is up to a centimetre nearer.
+        """
+        for wanted in self._mode.mppi.alternatives():
+            command = approach(STOP, wanted, self._mode.params, dt)
+            eased = self._gate.eased(command, inputs.ages)
+            is_free = self._collision.check(inputs.pose, eased).scale == 1.0
+            if is_free and eased != STOP:
+                return self._emit(eased, ControlState.FOLLOWING)
+        return None
 
     def _near_discs(self, pose: Pose2) -> NDArray[np.float64]:
         """Return the moving obstacles that the robot can meet within the horizon."""

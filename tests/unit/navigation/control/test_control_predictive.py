@@ -142,3 +142,37 @@ def test_a_path_that_is_published_again_is_followed_from_the_robot() -> None:
         assert output.distance_left_m < 5.1
         speeds.append(output.command.speed)
     assert speeds[-1] > 0.3
+
+
+@pytest.mark.parametrize(
+    ("beside_m", "ahead", "path_y", "bend_rad"),
+    [
+        (-0.04, (0.39, -0.4), 0.09, 0.2),
+        (-0.05, (0.58, -0.31), 0.14, 0.1),
+        (-0.05, (0.66, -0.3), 0.05, 0.4),
+    ],
+)
+def test_a_robot_at_rest_close_to_a_post_drives_on(
+    beside_m: float, ahead: tuple[float, float], path_y: float, bend_rad: float
+) -> None:
+    """A post beside the body leaves 2 mm more than the margin, the next one a bend.
+
+    The mean of the candidates turns towards the post and is refused at every step.
+    """
+    half_width, radius = 0.2, 0.075
+    body = (0.25, half_width, -0.25, half_width, -0.25, -half_width, 0.25, -half_width)
+    robot = follower(
+        footprint_m=body,
+        cruise_speed_mps=2.0,
+        acceleration_mps2=1.5,
+        turn_acceleration_radps2=4.0,
+    )
+    beside = (beside_m, -half_width - radius - BIG.collision_margin_m - 0.002)
+    around = radius * np.exp(1j * np.arange(0, math.tau, 0.1))
+    ring = np.column_stack([around.real, around.imag])
+    robot.set_obstacles(np.concatenate([ring + beside, ring + ahead]), 0.0)
+    end = (0.4 + 2 * math.cos(bend_rad), path_y + 2 * math.sin(bend_rad))
+    robot.set_path(tangent_path(np.array([[0, path_y], [0.4, path_y], end])))
+    result = run(robot, Plant(Pose2(0.0, 0.0, 0.0)), 12.0)
+    assert result.final.state == "reached"
+    assert min(o.clearance_m for o in result.outputs) > 0.02
