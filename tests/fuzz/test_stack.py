@@ -158,7 +158,7 @@ def test_unusable_inputs_on_every_topic_end_nothing() -> None:
                 robot.check()
             assert attacker.sent >= 999
             dropped = sum(
-                sum(node.dropped_inputs.values()) for node in vars(robot.stack).values()
+                sum(node.dropped_inputs.values()) for node in robot.stack.nodes
             )
             assert dropped > 500
 

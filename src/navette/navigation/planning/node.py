@@ -72,6 +72,8 @@ _STALLED = "stalled"
 _MOVING_TIMEOUT_S = 0.5
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
+# After localization: the corrected pose and map follow on other topics.
+_RELOCATION_NS = 500_000_000
 # Status of a localization node → why the goal waits; of any other: it is localizing.
 _UNLOCATED: dict[str, Outcome | Phase | None] = {
     "localized": None,
@@ -175,6 +177,7 @@ class PlannerNode(StageNode):
         self._after_step: list[Callable[[], None]] = []
         self._odometry_ns: int | None = None
         self._unlocated: Outcome | Phase | None = None
+        self._relocated_ns: int | None = None
         self._zones: KeepOutZones | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
@@ -287,11 +290,16 @@ class PlannerNode(StageNode):
 
     def on_localization_status(self, msg: DiagnosticStatus) -> None:
         """Stop a robot that is lost; continue when it is localized again."""
-        before, self._unlocated = (
+        before, found = (
             self._unlocated,
             _UNLOCATED.get(msg.message, Phase.LOCALIZING),
         )
-        if self._unlocated is not before:
+        if found is None and before is not None:
+            if self._relocated_ns is None:
+                self._relocated_ns = self._now_ns + _RELOCATION_NS
+            return
+        self._unlocated, self._relocated_ns = found, None
+        if found is not before:
             self._drop_step()
             self.on_timer()
 
@@ -378,6 +386,8 @@ class PlannerNode(StageNode):
 
     def on_timer(self) -> None:
         """Step the navigator."""
+        if self._relocated_ns is not None and self._now_ns >= self._relocated_ns:
+            self._unlocated = self._relocated_ns = None
         if self._stepping is not None:
             self._step_is_due = True
             return

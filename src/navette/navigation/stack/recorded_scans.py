@@ -13,6 +13,7 @@ from navette.errors import (
     UnknownNameError,
 )
 from navette.geometry import Pose2, Transform3, yaw_of
+from navette.msgs.topics import LIDAR, ODOMETRY
 from navette.navigation.grids import PlanarScan
 from navette.navigation.slam.messages import planar_scan
 from navette.runtime import stamp_to_ns
@@ -24,8 +25,8 @@ _SCAN = "sensor_msgs/msg/LaserScan"
 _ODOMETRY = "nav_msgs/msg/Odometry"
 _TRANSFORMS = ("/tf", "/tf_static")
 # Preferred where a recording has several topics of the type.
-_USUAL_SCANS = ("/scan", "/lidar")
-_USUAL_ODOMETRY = ("/odom", "/odometry", "/wheel/odometry", "/odom/filtered")
+_USUAL_SCANS = ("/scan", LIDAR.name)
+_USUAL_ODOMETRY = ("/odom", "/odometry", "/wheel/odometry", ODOMETRY.name)
 NO_ODOMETRY = "none"
 _FOREVER_NS = 1 << 62
 

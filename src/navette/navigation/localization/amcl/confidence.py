@@ -37,6 +37,11 @@ class ConfidenceMonitor:
         self._poor_since_ns: int | None = None
         self._good = 0
 
+    @property
+    def is_promising(self) -> bool:
+        """Whether the last scan fits: a search would disturb what scans may confirm."""
+        return self._good > 0
+
     def update(
         self, match: float, stddev_m: float, share: float, now_ns: int
     ) -> LocalizationState:

@@ -154,7 +154,8 @@ class MapLocalizer:
             self._map_T_odom = map_T_odom
         if state is LocalizationState.LOST:
             self._is_given = False
-            self._search(scan)
+            if not self.confidence.is_promising:
+                self._search(scan)
         return Located(state, estimate, self._map_T_odom, match, is_updated)
 
     def _search(self, scan: ScanView) -> None:
