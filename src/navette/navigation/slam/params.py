@@ -41,7 +41,10 @@ class SlamParams(FrameParams):
         5.0, "between two maps, while the map is subscribed to", at_least=0.1
     )
     lost_scans: int = param(
-        20, "scans in a row without a match after which the robot is lost", at_least=1
+        20,
+        "scans in a row without a match after which the robot is lost",
+        at_least=1,
+        at_most=10_000,
     )
 
     # Scans
