@@ -157,16 +157,20 @@ class _TurtleEntities:
 
     def __init__(self, node: Node, turtle: Turtle) -> None:
         self.turtle = turtle
-        self._node, name = node, turtle.name
-        self._pose = node.create_publisher(TurtlePose, f"{name}/pose", _QOS)
-        self._colour = node.create_publisher(Color, f"{name}/color_sensor", _QOS)
+        self._node = node
+
+        def own(name: str) -> str:
+            return f"{turtle.name}/{name}"
+
+        self._pose = node.create_publisher(TurtlePose, own("pose"), _QOS)
+        self._colour = node.create_publisher(Color, own("color_sensor"), _QOS)
         self._teleports: list[Callable[[Canvas], None]] = []
         self._rotation: _Rotation | None = None
         self._subscription = node.create_subscription(
-            Twist, f"{name}/cmd_vel", self._on_command, _QOS
+            Twist, own("cmd_vel"), self._on_command, _QOS
         )
         self._services = [
-            node.create_service(kind, f"{name}/{verb}", answer)
+            node.create_service(kind, own(verb), answer)
             for kind, verb, answer in (
                 (SetPen, "set_pen", self._set_pen),
                 (TeleportRelative, "teleport_relative", self._teleport_relative),
@@ -176,7 +180,7 @@ class _TurtleEntities:
         self._action = ActionServer(
             node,
             RotateAbsolute,
-            f"{name}/rotate_absolute",
+            own("rotate_absolute"),
             execute_callback=self._rotate,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
