@@ -15,7 +15,8 @@ from fuzz.parameter_values import extremes, infos, wrong_types
 from fuzz.subjects import SUBJECTS, Feed, Subject, running, stamped, valid_message
 from navette.msgs import Message, serialize
 from navette.msgs.rcl_interfaces.srv import SetParameters
-from navette.runtime import Node, Parameter
+from navette.runtime import Node, Parameter, VirtualClock
+from navette.sim.run_control import RunControl
 from navette.testing import GraphHarness
 
 pytestmark = pytest.mark.long
@@ -24,6 +25,8 @@ _INPUTS = 120
 _REQUESTS = 60
 #: Of the services that every node has: parameters, types, action bookkeeping.
 _COMMON_REQUESTS = 10
+#: They stop the time that the test itself runs in; see test_run_control.
+_STOPS_TIME = ("set_simulation_state", "step_simulation")
 _COMMON = ("parameter", "get_type_description", "cancel_goal", "get_result", "frames")
 #: No return of a beam is infinite, and goals are passed on to the planner, which
 #: refuses them by a named status.
@@ -98,7 +101,11 @@ def test_services(subject: Subject) -> None:
         with running(subject) as (graph, node, feed):
             extremes = Extremes(seed)
             Outputs(graph, node)
-            services = [(s.srv_name, s.srv_type) for s in node.services]
+            services = [
+                (s.srv_name, s.srv_type)
+                for s in node.services
+                if not s.srv_name.endswith(_STOPS_TIME)
+            ]
             for name, kind in services:
                 client = graph.node.create_client(kind, name)
                 is_common = any(part in name for part in _COMMON)
@@ -113,6 +120,19 @@ def test_services(subject: Subject) -> None:
                     with within():
                         graph.run_for(0.01)
                 client.destroy()
+
+
+def test_run_control() -> None:
+    for seed in rounds():
+        extremes, clock = Extremes(seed), VirtualClock()
+        control = RunControl(clock, None, 10_000_000, reset=lambda: None)
+        for kind, serve in control.services.values():
+            for _ in range(_REQUESTS):
+                clock.paused = bool(extremes.rng.integers(2))
+                with within():
+                    response = serve(extremes.message(kind.Request), kind.Response())
+                assert response is not None
+        assert clock.now_ns == 0
 
 
 @subjects

@@ -12,7 +12,7 @@ class ScanSelection:
     """
 
     def __init__(self, rate_hz: float) -> None:
-        self._period_ns = round(1e9 / rate_hz) if rate_hz > 0 else 0
+        self._period_ns = round(min(1e9 / rate_hz, 1e18)) if rate_hz > 0 else 0
         self._last_ns: int | None = None
 
     def takes(self, stamp_ns: int) -> bool:

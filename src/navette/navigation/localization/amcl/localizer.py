@@ -1,6 +1,5 @@
 """Localization in a known map: particles, confidence, and when to search the map."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -26,6 +25,7 @@ from navette.navigation.localization.amcl.particle_filter import ParticleFilter
 _REST_UPDATE_NS = 1_000_000_000
 # Period of searches of the whole map while the robot is lost.
 _SEARCH_NS = 1_000_000_000
+_FARTHEST_M = 1e6  # of a standard deviation
 _LOST_SHARE = 0.5  # of the particles that such a search replaces
 
 
@@ -178,7 +178,8 @@ def default_covariance(params: AmclParams) -> NDArray[np.float64]:
 
 def is_usable(covariance: NDArray[np.float64]) -> bool:
     """Whether a matrix (3, 3) is a covariance with variances above zero."""
-    finite = bool(np.isfinite(covariance).all()) and math.isfinite(covariance.sum())
-    if not (finite and np.allclose(covariance, covariance.T)):
+    if not (np.abs(covariance) < _FARTHEST_M**2).all():  # false for NaN, too
+        return False
+    if not np.allclose(covariance, covariance.T):
         return False
     return bool((np.linalg.eigvalsh(covariance) > 0.0).all())

@@ -26,7 +26,8 @@ def scan_points(
     """
     if not (math.isfinite(msg.angle_min) and math.isfinite(msg.angle_increment)):
         raise InvalidInputError("not_finite", "angle_min or angle_increment")
-    ranges = np.asarray(msg.ranges, np.float64)
+    with np.errstate(invalid="ignore"):  # signalling NaNs
+        ranges = np.asarray(msg.ranges, np.float64)
     least = msg.range_min if params.laser_min_range < 0 else params.laser_min_range
     most = msg.range_max
     if params.laser_max_range >= 0:

@@ -18,6 +18,7 @@ from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.nav2_msgs.srv import SetInitialPose
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.std_srvs.srv import Empty
@@ -40,12 +41,18 @@ from navette.navigation.localization.amcl.messages import (
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.input_check import input_check
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
 
 _START = ("x", "y", "z", "yaw")
+_LATEST_NS = (2**31 - 1) * 1_000_000_000  # of a message
+_PLACE = ParameterDescriptor(
+    description="where the robot starts, if set_initial_pose [m, rad]",
+    floating_point_range=[FloatingPointRange(from_value=-1e6, to_value=1e6)],
+)
 _LEVELS = {
     LocalizationState.LOCALIZED: StatusReporter.OK,
     LocalizationState.LOCALIZING: StatusReporter.WARN,
@@ -95,7 +102,7 @@ class AmclNode(StageNode):
     def declare_params(self) -> Any:
         """Declare Nav2's initial_pose.x, .y, .z and .yaw beside PARAMS."""
         self._start = [
-            float(self.declare_parameter(f"initial_pose.{name}", 0.0).value)
+            float(self.declare_parameter(f"initial_pose.{name}", 0.0, _PLACE).value)
             for name in _START
         ]
         return super().declare_params()
@@ -140,7 +147,11 @@ class AmclNode(StageNode):
 
     def on_set_pose(self, request: Any, response: Any) -> Any:
         """Continue from a pose, as with ``/initialpose``."""
-        self.on_initial_pose(request.pose)
+        try:
+            input_check(topics.INITIAL_POSE.type)(request.pose)
+            self.on_initial_pose(request.pose)
+        except InvalidInputError as error:
+            self.drop_input(topics.INITIAL_POSE.name, error)
         return response
 
     def on_reinitialize(self, request: Any, response: Any) -> Any:
@@ -209,7 +220,7 @@ class AmclNode(StageNode):
         if located.map_T_odom is not None and params.tf_broadcast:
             ahead_ns = round(params.transform_tolerance * 1e9)
             transform = transform_message(
-                stamp_ns + ahead_ns,
+                min(stamp_ns + ahead_ns, _LATEST_NS),
                 params.global_frame_id,
                 params.odom_frame_id,
                 Transform3.from_pose2(located.map_T_odom),

@@ -37,10 +37,16 @@ class AmclParams(Params):
     )
     first_map_only: bool = param(False, "whether later maps are ignored")
     initial_stddev_m: float = param(
-        0.3, "stddev of x and y of an initial pose without covariance", above=0.0
+        0.3,
+        "stddev of x and y of an initial pose without covariance",
+        at_least=1e-3,
+        at_most=100.0,
     )
     initial_stddev_rad: float = param(
-        0.2, "stddev of the heading of an initial pose without covariance", above=0.0
+        0.2,
+        "stddev of the heading of an initial pose without covariance",
+        at_least=1e-3,
+        at_most=10.0,
     )
 
     robot_model_type: str = param(
@@ -64,7 +70,10 @@ class AmclParams(Params):
         "likelihood_field", "sensor model", choices=("likelihood_field",)
     )
     laser_likelihood_max_dist: float = param(
-        2.0, "distance from an obstacle beyond which all places are equal", above=0.0
+        2.0,
+        "distance from an obstacle beyond which all places are equal",
+        at_least=0.01,
+        at_most=100.0,
     )
     laser_max_range: float = param(
         100.0, "ranges from here on are not used; -1: the scanner's limit", at_least=-1
@@ -76,14 +85,22 @@ class AmclParams(Params):
         60, "beams of a scan that are used", at_least=2, at_most=10_000
     )
     sigma_hit: float = param(
-        0.15, "stddev of a range, with the error of the map", above=0.0
+        0.15,
+        "stddev of a range, with the error of the map",
+        at_least=1e-3,
+        at_most=10.0,
     )
-    z_hit: float = param(0.9, "weight of beams that hit the map", above=0.0)
-    z_rand: float = param(0.1, "weight of beams that hit something else", above=0.0)
+    z_hit: float = param(
+        0.9, "weight of beams that hit the map", at_least=1e-3, at_most=1e3
+    )
+    z_rand: float = param(
+        0.1, "weight of beams that hit something else", at_least=1e-6, at_most=1e3
+    )
     independent_beams: float = param(
         15.0,
         "beams that the used ones count for: neighbours have the same errors",
-        above=0.0,
+        at_least=0.1,
+        at_most=1e5,
     )
 
     max_particles: int = param(
@@ -93,7 +110,7 @@ class AmclParams(Params):
         400, "least number of particles", at_least=10, at_most=100_000
     )
     pf_err: float = param(
-        0.05, "KLD sampling: error of the distribution", above=0.0, below=1.0
+        0.05, "KLD sampling: error of the distribution", at_least=1e-3, below=1.0
     )
     pf_z: float = param(
         0.99, "KLD sampling: quantile of the error", above=0.5, below=1.0
