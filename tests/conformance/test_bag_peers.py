@@ -19,6 +19,8 @@ from navette.bags.writing import open_writer
 from navette.navigation.stack import RunOptions
 from navette.navigation.stack.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -17,6 +17,8 @@ from navette.bags import BagWriter, OfferedQos, qos_text
 from navette.msgs import definition_text, serialize
 from navette.msgs.std_msgs.msg import String
 
+pytestmark = pytest.mark.long
+
 S = 1_000_000_000
 COUNT = 200
 

@@ -11,6 +11,8 @@ from navette.errors import FileFormatError
 from navette.sim import load_robot, load_world
 from navette.sim.limits import MOST_MOVING
 
+pytestmark = pytest.mark.long
+
 
 @pytest.mark.parametrize("write", models.WORLDS, ids=lambda each: each.__name__)
 def test_worlds(write: Callable[[Path], Path], tmp_path: Path) -> None:

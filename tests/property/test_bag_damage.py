@@ -10,6 +10,8 @@ from navette.bags import BagMessage, Damage, open_bag
 from navette.bags.checking import check_bag
 from navette.errors import FileFormatError
 
+pytestmark = pytest.mark.long
+
 ROS1_PADDING = range(120, 4000)
 """Padding between the first record of a ROS 1 bag and its data."""
 

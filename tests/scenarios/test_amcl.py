@@ -16,6 +16,8 @@ from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
 from navette.sim import Scene, World
 
+pytestmark = pytest.mark.long
+
 START, GOAL = Pose2(-4.0, -2.0, 0.0), (4.0, 2.0)
 HALF_X, HALF_Y, WALL_M, CELL_M = 6.0, 4.0, 0.2, 0.05
 
@@ -116,7 +118,6 @@ def drive(
         simulation.close()
 
 
-@pytest.mark.long
 def test_a_known_start_is_followed(tmp_path: Path) -> None:
     found = drive(tmp_path)
     assert (found.result, found.contacts) == ("reached", 0)
@@ -124,7 +125,6 @@ def test_a_known_start_is_followed(tmp_path: Path) -> None:
     assert "lost" not in found.localization
 
 
-@pytest.mark.slow
 def test_an_unknown_start_is_found_before_the_robot_drives(tmp_path: Path) -> None:
     found = drive(tmp_path, set_initial_pose=False)
     assert (found.result, found.contacts) == ("reached", 0)
@@ -133,7 +133,6 @@ def test_an_unknown_start_is_found_before_the_robot_drives(tmp_path: Path) -> No
     assert found.final_m < 0.15
 
 
-@pytest.mark.slow
 def test_a_wrong_initial_pose_is_corrected(tmp_path: Path) -> None:
     found = drive(
         tmp_path,
@@ -150,7 +149,6 @@ def carry(simulation: Simulation) -> None:
     simulation.sim.simulator.state.place(pose)
 
 
-@pytest.mark.slow
 def test_a_carried_robot_is_found(tmp_path: Path) -> None:
     found = drive(tmp_path, carry)
     assert (found.result, found.contacts) == ("reached", 0)
@@ -164,7 +162,6 @@ def jump(simulation: Simulation) -> None:
     odometry.pose = odometry.pose @ Pose2(0.7, 0.3, 0.4)
 
 
-@pytest.mark.long
 def test_a_jump_of_the_odometry_is_corrected(tmp_path: Path) -> None:
     found = drive(tmp_path, jump)
     assert (found.result, found.contacts) == ("reached", 0)
@@ -185,7 +182,6 @@ def blind(simulation: Simulation) -> None:
     end = simulation.monitor.create_timer(2.0, continue_scans)
 
 
-@pytest.mark.long
 def test_missing_scans_stop_the_robot_for_their_time(tmp_path: Path) -> None:
     found = drive(tmp_path, blind)
     assert (found.result, found.contacts) == ("reached", 0)

@@ -18,6 +18,8 @@ from navette.transports.certificates import create_keys
 from navette.transports.zenoh.security import Security
 from navette.transports.zenoh.settings import Settings
 
+pytestmark = pytest.mark.long
+
 NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
 
 

@@ -17,6 +17,8 @@ import navette
 from mounts import needs_mounts, read_only, small
 from navette.files import kernels
 
+pytestmark = pytest.mark.long
+
 PROGRAM = """
 import json, sys
 from caller import area, Size

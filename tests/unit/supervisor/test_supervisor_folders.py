@@ -11,7 +11,10 @@ from mounts import needs_mounts, read_only, small
 from navette.supervisor import project
 from navette.supervisor.project import SupervisorError, socket_path, state_root
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="supervisors are for POSIX")
+pytestmark = [
+    pytest.mark.skipif(os.name != "posix", reason="supervisors are for POSIX"),
+    pytest.mark.long,
+]
 
 SERVICES = """
 services:
