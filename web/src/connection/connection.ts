@@ -137,7 +137,7 @@ export interface Connection {
 
   /**
    * Publish a message object of a ROS 2 type, at once. The channel is advertised on first use.
-   * Returns false when there is no connection.
+   * Returns false while disconnected.
    */
   publish(topic: string, type: string, message: object): boolean;
   callService<T = unknown>(service: string, request: object): Promise<T>;

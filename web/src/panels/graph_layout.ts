@@ -77,7 +77,7 @@ export function layOut(nodes: readonly string[], edges: readonly GraphEdge[]): G
   return { places, columns: layers.length, rows: height };
 }
 
-/** Edges without those that lead back in a depth-first search from the sources. */
+/** Edges except the back edges of a depth-first search from the sources. */
 function withoutCycles(nodes: readonly string[], edges: readonly GraphEdge[]): GraphEdge[] {
   const outgoing = new Map<string, GraphEdge[]>(nodes.map((node) => [node, []]));
   const incoming = new Map(nodes.map((node) => [node, 0]));

@@ -75,10 +75,10 @@ class SlamParams(FrameParams):
     )
 
     max_acceleration_mps2: float = param(
-        1.0, "largest acceleration, where there is no odometry", above=0.0
+        1.0, "largest acceleration assumed without odometry", above=0.0
     )
     max_yaw_acceleration_radps2: float = param(
-        2.0, "largest angular acceleration, where there is no odometry", above=0.0,
+        2.0, "largest angular acceleration assumed without odometry", above=0.0,
     )  # fmt: skip
 
     # Key scans and scan matching

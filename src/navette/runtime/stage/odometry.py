@@ -31,7 +31,7 @@ class PoseTracker:
     front of the axle; static transforms convert its pose to the base's. The history is
     kept in the odometry's frame. If that is not the map frame, the newest transform
     between the two is applied to all of it (REP 105: map_T_odom is corrected in steps,
-    odom_T_base is continuous). There is no pose until these transforms are available.
+    odom_T_base is continuous). Without a transform the pose is unknown.
 
     Args:
         node: the node that receives the transforms.
