@@ -26,6 +26,12 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _GRACE_PERIOD_S = 0.3
 
 
+def obey_interrupts() -> None:
+    """End an inherited "ignore SIGINT", with which shells start jobs of scripts."""
+    if _in_main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def raise_at_interrupt() -> None:
     """Restore KeyboardInterrupt, which :func:`navette.cli.main` disables."""
     if _in_main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:

@@ -1,8 +1,10 @@
 """Signal handling of a program's contexts.
 
 SIGINT raises KeyboardInterrupt, as in plain Python, for all options: contexts stay
-valid, so that a program can publish a last command. SIGTERM shuts down the contexts:
-spins end and ``ok()`` is false. Handlers of the program stay in place.
+valid, so that a program can publish a last command. Shells start background jobs of
+scripts with SIGINT ignored; as in rclpy, the option SIGINT ends that. SIGTERM shuts
+down the contexts: spins end and ``ok()`` is false. Handlers of the program stay in
+place.
 """
 
 import signal
@@ -33,19 +35,27 @@ class _Installed:
 def install_signal_handlers(
     options: SignalHandlerOptions = SignalHandlerOptions.ALL,
 ) -> None:
-    """Let SIGTERM shut down the contexts, if the options include it.
+    """Let SIGTERM shut down the contexts, and end an inherited "ignore SIGINT".
 
-    Without effect if the program has its own handler, and outside the main thread,
-    where Python does not allow handlers.
+    Each if the options include the signal. Without effect if the program has its own
+    handler, and outside the main thread, where Python does not allow handlers.
     """
     _Installed.options = SignalHandlerOptions(options)
-    if not options & SignalHandlerOptions.SIGTERM:
-        return
     if threading.current_thread() is not threading.main_thread():
+        return
+    if options & SignalHandlerOptions.SIGINT:
+        obey_interrupts()
+    if not options & SignalHandlerOptions.SIGTERM:
         return
     if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
         signal.signal(signal.SIGTERM, _on_sigterm)
         _Installed.is_ours = True
+
+
+def obey_interrupts() -> None:
+    """Let SIGINT raise KeyboardInterrupt if this process inherited it as ignored."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def uninstall_signal_handlers() -> None:

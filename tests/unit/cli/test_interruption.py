@@ -13,6 +13,7 @@ from navette.cli.interruption import (
     default_signal_action,
     ending_on_signals,
     interruptible,
+    obey_interrupts,
     raise_at_interrupt,
 )
 from navette.cli.verbs import VERBS
@@ -103,6 +104,15 @@ def test_ignored_signals_stay_ignored() -> None:
         signal.raise_signal(signal.SIGINT)
     raise_at_interrupt()
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+def test_a_verb_that_a_script_started_in_the_background_ends_on_sigint() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    obey_interrupts()
+    assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    obey_interrupts()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.parametrize(

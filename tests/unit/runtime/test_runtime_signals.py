@@ -45,6 +45,40 @@ def test_init_installs_and_shutdown_removes() -> None:
     assert signal.getsignal(signal.SIGTERM) is before
 
 
+def test_a_background_job_ends_on_sigint() -> None:
+    """As in rclpy, although shells start the jobs of a script with SIGINT ignored."""
+    program = textwrap.dedent(
+        """
+        import signal
+        import navette
+
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        navette.init()
+        node = navette.Node("job")
+        node.create_timer(0.01, lambda: signal.raise_signal(signal.SIGINT))
+        try:
+            navette.spin(node)
+        except KeyboardInterrupt:
+            print("interrupted")
+        """
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout) == (0, "interrupted\n"), done.stderr
+
+
+def test_without_the_option_an_ignored_sigint_stays_ignored() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        install_signal_handlers(SignalHandlerOptions.SIGTERM)
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+        install_signal_handlers(SignalHandlerOptions.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_a_custom_context_installs_the_given_handlers_only() -> None:
     context = navette.Context()
     with navette.init(args=[], context=context, clock=VirtualClock()):
