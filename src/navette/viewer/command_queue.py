@@ -12,10 +12,11 @@ from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.work_time import WorkTime
 
 _SLICE_S = 0.002  # after which other callbacks run first
 _SHARE = 0.1  # seconds of the executor's time per second
-_BURST_S = 0.1
+_BURST_S = 0.25  # a page that opens subscribes to some 40 topics
 
 Command = Callable[[], None]
 
@@ -29,7 +30,7 @@ class CommandQueue:
         run_soon: runs a function on the executor's thread.
         run_later: runs a function on the socket thread after a delay in seconds.
         now_s: monotonic wall time.
-        cpu_s: CPU time of the calling thread: waiting for the interpreter is not work.
+        cpu_s: CPU time of the calling thread.
     """
 
     def __init__(
@@ -40,30 +41,40 @@ class CommandQueue:
         *,
         cpu_s: Callable[[], float] = time.thread_time,
     ) -> None:
-        self._run_soon, self._run_later, self._cpu_s = run_soon, run_later, cpu_s
+        self._run_soon, self._run_later = run_soon, run_later
+        self._work = WorkTime(now_s, cpu_s)
         self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}
         self._turns: deque[Hashable] = deque()
+        self._urgent: OrderedDict[Hashable, Command] = OrderedDict()
         self._lock = threading.Lock()
         self._is_scheduled = False
         self._numbers = itertools.count()
         self._budget = TokenBucket(_SHARE, _BURST_S, now_s)
 
     def add(
-        self, lane: Hashable, command: Command, key: Hashable | None = None
+        self,
+        lane: Hashable,
+        command: Command,
+        key: Hashable | None = None,
+        *,
+        is_next: bool = False,
     ) -> None:
         """Queue a command behind those of its lane.
 
         Args:
             key: a queued command of the same key is dropped.
+            is_next: before all other commands; for those that end work.
         """
         with self._lock:
-            commands = self._lanes.get(lane)
-            if commands is None:
-                commands = self._lanes[lane] = OrderedDict()
-                self._turns.append(lane)
             name = next(self._numbers) if key is None else (key,)
-            commands.pop(name, None)
-            commands[name] = command
+            self._drop(lane, name)
+            if is_next:
+                self._urgent[lane, name] = command
+            else:
+                if lane not in self._lanes:
+                    self._lanes[lane] = OrderedDict()
+                    self._turns.append(lane)
+                self._lanes[lane][name] = command
             if self._is_scheduled:
                 return
             self._is_scheduled = True
@@ -71,17 +82,14 @@ class CommandQueue:
 
     def _run_slice(self) -> None:
         """Run commands for a short time, then let other callbacks run."""
-        begin_s = self._cpu_s()
+        self._work.begin()
         while (command := self._next()) is not None:
             command()
-            used_s = self._cpu_s() - begin_s
-            if used_s >= _SLICE_S:
+            if self._work.elapsed_s() >= _SLICE_S:
                 break
-        else:
-            used_s = self._cpu_s() - begin_s
-        self._budget.take(used_s)
+        self._budget.take(self._work.elapsed_s())
         with self._lock:
-            self._is_scheduled = bool(self._turns)
+            self._is_scheduled = bool(self._turns or self._urgent)
             if not self._is_scheduled:
                 return
         wait_s = self._budget.wait_s()
@@ -90,8 +98,17 @@ class CommandQueue:
         else:
             self._run_soon(self._run_slice)
 
+    def _drop(self, lane: Hashable, name: Hashable) -> None:
+        self._urgent.pop((lane, name), None)
+        commands = self._lanes.get(lane, {})
+        if commands.pop(name, None) is not None and not commands:
+            del self._lanes[lane]
+            self._turns.remove(lane)
+
     def _next(self) -> Command | None:
         with self._lock:
+            if self._urgent:
+                return self._urgent.popitem(last=False)[1]
             if not self._turns:
                 return None
             lane = self._turns.popleft()

@@ -19,7 +19,7 @@ from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.last_value_cache import LastValueCache
 from navette.viewer.liveness import NodeReport
 from navette.viewer.offered_services import OfferedServices
-from navette.viewer.outbox import Outbox
+from navette.viewer.outbox import MessageFrame, Outbox
 from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, ConnectionGraph, Level, OfferedService
@@ -32,11 +32,12 @@ _MAX_PARAMETER_NAMES = 1000  # to whose changes a client subscribes
 _MAX_QUEUED = 256 * 2**20  # bytes for all clients; beyond, no files are sent
 _MAX_PROBLEMS = 3  # of a request that are reported one by one
 _TIME, _NODES = "time", "nodes"
-# Subscriptions of all clients are one lane: their order matters to all.
-_WATCHES = 0
+_WATCHES = 0  # lane of the subscriptions that clients share
 
 
-def _call_directly(_lane: Hashable, command: Command, _key: Hashable = None) -> None:
+def _call_directly(
+    _lane: Hashable, command: Command, _key: Hashable = None, **_order: bool
+) -> None:
     command()
 
 
@@ -45,8 +46,7 @@ class Hub:
 
     Args:
         forward: runs a command on the executor's thread; returns at once. Its arguments
-            are a lane (commands of a lane run in order), the command, and a key (a
-            command that has not run yet is replaced by one of the same key).
+            are those of :meth:`~navette.viewer.command_queue.CommandQueue.add`.
     """
 
     def __init__(
@@ -115,6 +115,29 @@ class Hub:
             self._request(session, self._program.close_publisher, channel_id)
         self._sessions.pop(session.id, None)
 
+    def suspend(self, session: Session) -> None:
+        """Deliver no more streams to a client that does not read.
+
+        Topics that no other client shows are no longer subscribed, so that no camera
+        is rendered for it. States (latched or stored topics) are queued further.
+        """
+        session.is_suspended = True
+        for channel_id in session.subscription_by_channel:
+            self._suspend_channel(session, self._channels[channel_id])
+
+    def _suspend_channel(self, session: Session, channel: Channel) -> None:
+        is_stream = not channel.latched and channel.id not in self._last
+        if is_stream and channel.id not in session.suspended_channels:
+            session.suspended_channels.add(channel.id)
+            self._remove_watcher(session, channel)
+
+    def resume(self, session: Session) -> None:
+        """Deliver streams again, from the newest message on."""
+        session.is_suspended = False
+        for channel_id in session.suspended_channels:
+            self._add_watcher(session, self._channels[channel_id])
+        session.suspended_channels.clear()
+
     def receive(self, session: Session, frame: str | bytes) -> None:
         """Handle one frame; an error in it is sent back as a status message."""
         try:
@@ -164,7 +187,7 @@ class Hub:
         for client in self._watchers.get(watch, ()):
             session = self._sessions[client]
             subscription_id = session.subscription_by_channel[channel_id]
-            frame = replies.message_data(subscription_id, stamp_ns, payload)
+            frame = MessageFrame(subscription_id, stamp_ns, payload)
             session.outbox.put_data(subscription_id, frame)
         if channel_id in self._last:
             self._last.store(channel_id, stamp_ns, payload)
@@ -277,6 +300,8 @@ class Hub:
                 session.channel_by_subscription[subscription_id] = channel_id
                 session.subscription_by_channel[channel_id] = subscription_id
                 self._add_watcher(session, channel)
+                if session.is_suspended:
+                    self._suspend_channel(session, channel)
         _report(session, "subscribe", problems)
 
     def _on_unsubscribe(self, session: Session, request: frames.Unsubscribe) -> None:
@@ -292,9 +317,14 @@ class Hub:
         channel_id = session.channel_by_subscription.pop(subscription_id)
         del session.subscription_by_channel[channel_id]
         session.outbox.forget(subscription_id)
-        watch = _watch_of(session, self._channels[channel_id])
-        watchers = self._watchers[watch]
-        watchers.discard(session.id)
+        if channel_id in session.suspended_channels:
+            session.suspended_channels.discard(channel_id)
+        else:
+            self._remove_watcher(session, self._channels[channel_id])
+
+    def _remove_watcher(self, session: Session, channel: Channel) -> None:
+        watch = _watch_of(session, channel)
+        self._watchers[watch].discard(session.id)
         self._drop_unwatched(watch)
 
     def _add_watcher(self, session: Session, channel: Channel) -> None:
@@ -302,13 +332,13 @@ class Hub:
         watchers = self._watchers.get(watch)
         if watchers is None:
             self._watchers[watch] = {session.id}
-            self._forward_watch(self._program.watch, watch)
+            self._watch(watch)
             return
         watchers.add(session.id)
         last = self._last.last(channel.id)
         if last is not None:
             subscription_id = session.subscription_by_channel[channel.id]
-            frame = replies.message_data(subscription_id, *last)
+            frame = MessageFrame(subscription_id, *last)
             session.outbox.put_data(subscription_id, frame)
 
     def _keep(self, channel: Channel, *, is_published: bool) -> None:
@@ -320,13 +350,13 @@ class Hub:
                 self._drop_unwatched(watch)
         elif self._last.open(channel.id) and watch not in self._watchers:
             self._watchers[watch] = set()
-            self._forward_watch(self._program.watch, watch)
+            self._watch(watch)
 
     def _drop_unwatched(self, watch: Watch) -> None:
         """Unsubscribe from a topic without clients, unless it is cached."""
         if not self._watchers[watch] and watch.channel.id not in self._last:
             del self._watchers[watch]
-            self._forward_watch(self._program.unwatch, watch)
+            self._unwatch(watch)
 
     def _advertise(self, session: Session, request: frames.Advertise) -> None:
         problems = []
@@ -479,8 +509,13 @@ class Hub:
         session.pending += 1
         self._forward(session.id, partial(command, session.id, *args))
 
-    def _forward_watch(self, command: Callable[[Watch], None], watch: Watch) -> None:
-        self._forward(_WATCHES, partial(command, watch), watch)
+    def _watch(self, watch: Watch) -> None:
+        command = partial(self._program.watch, watch)
+        self._forward(watch.client or _WATCHES, command, watch)
+
+    def _unwatch(self, watch: Watch) -> None:
+        command = partial(self._program.unwatch, watch)
+        self._forward(watch.client or _WATCHES, command, watch, is_next=True)
 
     # -- internals ----------------------------------------------------------------
 

@@ -65,6 +65,8 @@ from navette.viewer.session import CallId, Watch
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 from navette.viewer.web import AccessPolicy, Site
 
+_GRAPH = "graph"  # lane of the refreshes
+_REFRESH_S = 0.1  # least wall time between two
 # Packages of the services that every node has.
 _EVERY_NODE = ("rcl_interfaces", "type_description_interfaces")
 
@@ -97,8 +99,9 @@ class ViewerNode(StageNode):
             "viewer", context=context, parameter_overrides=parameter_overrides
         )
         self._watched: dict[Watch, Subscription[Any]] = {}
-        self._definitions: dict[str, str | None] = {}
         self._refreshing = False
+        self._refreshed_s = -_REFRESH_S
+        self._definitions: dict[str, str | None] = {}
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
         self._wall = Stopwatch()
@@ -172,13 +175,25 @@ class ViewerNode(StageNode):
     # -- data for the clients ----------------------------------------------------
 
     def _on_graph_change(self) -> None:
-        """Schedule one refresh for any number of changes."""
-        if not self._refreshing:
-            self._refreshing = True
-            self.run_soon(self._refresh, "graph")
+        """Schedule one refresh for any number of changes.
+
+        A client that opens and closes channels changes the graph: refreshes are rare,
+        and share the time that commands of clients may take.
+        """
+        if self._refreshing:
+            return
+        self._refreshing = True
+        wait_s = self._refreshed_s + _REFRESH_S - self._wall_s()
+        if wait_s <= 0.0:
+            self._commands.add(_GRAPH, self._refresh)
+        else:
+            self._server.call_later(
+                wait_s, partial(self._commands.add, _GRAPH, self._refresh)
+            )
 
     def _refresh(self) -> None:
         self._refreshing = False
+        self._refreshed_s = self._wall_s()
         self._frames = (
             self._frame("map_frame", "map"),
             self._frame("base_frame", "base_link"),

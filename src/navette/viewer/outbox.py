@@ -4,7 +4,24 @@ from collections import deque
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 
+from navette.viewer import replies
+
 Frame = str | bytes
+
+
+@dataclass(frozen=True)
+class MessageFrame:
+    """A message; encoded when it is sent, so that dropped ones cost nothing."""
+
+    subscription_id: int
+    stamp_ns: int
+    payload: bytes
+
+    def __len__(self) -> int:
+        return len(self.payload)
+
+    def encode(self) -> bytes:
+        return replies.message_data(self.subscription_id, self.stamp_ns, self.payload)
 
 
 class Outbox:
@@ -51,7 +68,11 @@ class Outbox:
         self.overflowed = self.control_size > self._control_limit
 
     def put_data(
-        self, stream: Hashable, frame: Frame, *, depth: int | None = None
+        self,
+        stream: Hashable,
+        frame: Frame | MessageFrame,
+        *,
+        depth: int | None = None,
     ) -> None:
         waiting = self._streams.get(stream)
         if waiting is None:
@@ -89,7 +110,8 @@ class Outbox:
             frame = self._control.popleft()
             self.control_size -= len(frame)
         else:
-            frame = self._pop_data()
+            data = self._pop_data()
+            frame = data.encode() if isinstance(data, MessageFrame) else data
         self._sending = len(frame)
         return frame
 
@@ -102,7 +124,7 @@ class Outbox:
         """Bytes of all queued frames."""
         return self.control_size + self._data_size + self._sending
 
-    def _pop_data(self) -> Frame:
+    def _pop_data(self) -> Frame | MessageFrame:
         stream = self._turns.popleft()
         waiting = self._streams[stream]
         data = waiting.frames.popleft()
@@ -115,5 +137,5 @@ class Outbox:
 
 @dataclass
 class _Stream:
-    frames: deque[Frame] = field(default_factory=deque)
+    frames: deque[Frame | MessageFrame] = field(default_factory=deque)
     size: int = 0

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+from collections.abc import Callable
 
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
@@ -11,23 +12,35 @@ from navette.viewer.token_bucket import TokenBucket
 
 _MAX_PENDING = 16  # unfinished requests of one client
 _MAX_UNREAD = 4 * 2**20  # bytes of responses that a client has not received
+_STALL_S = 1.0  # after which a client that has not accepted a frame is suspended
 # Requests of one client. Teleoperation sends 10 a second, a page that opens about 100.
 _REQUEST_BURST, _REQUESTS_PER_S = 1000, 200
 _BYTE_BURST, _BYTES_PER_S = 16 * 2**20, 8 * 2**20
 
 
 class Peer:
-    """A client's connection, the frames queued for it and its unfinished requests."""
+    """A client's connection, the frames queued for it and its unfinished requests.
 
-    def __init__(self, connection: ServerConnection, session: Session) -> None:
+    Args:
+        on_emptied: called when the client has accepted all queued frames.
+    """
+
+    def __init__(
+        self,
+        connection: ServerConnection,
+        session: Session,
+        on_emptied: Callable[[], None],
+    ) -> None:
         self.connection = connection
         self.session = session
+        self._on_emptied = on_emptied
         #: Aborted: frames that still arrive are ignored.
         self.gone = False
         self._outbox = session.outbox
         self._answered = asyncio.Event()
         self._filled = asyncio.Event()
-        now_s = asyncio.get_running_loop().time
+        now_s = self._now_s = asyncio.get_running_loop().time
+        self._sending_since_s: float | None = None
         self._requests = TokenBucket(_REQUESTS_PER_S, _REQUEST_BURST, now_s)
         self._bytes = TokenBucket(_BYTES_PER_S, _BYTE_BURST, now_s)
 
@@ -45,6 +58,12 @@ class Peer:
 
     def check_pending(self) -> None:
         self._answered.set()
+
+    @property
+    def is_stalled(self) -> bool:
+        """Whether the client has not read what was sent to it for a second."""
+        since_s = self._sending_since_s
+        return since_s is not None and self._now_s() - since_s > _STALL_S
 
     async def admit(self, size: int) -> None:
         """Return when the client's next request may be read after one of ``size``.
@@ -71,6 +90,9 @@ class Peer:
                 await self._filled.wait()
                 self._filled.clear()
                 while self._outbox:
+                    self._sending_since_s = self._now_s()
                     await self.connection.send(self._outbox.pop())
+                    self._sending_since_s = None
                     self._outbox.sent()
                     self.check_pending()
+                self._on_emptied()

@@ -12,6 +12,7 @@ import ssl
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -32,7 +33,7 @@ from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
 from navette.viewer.peer_user import user_of
-from navette.viewer.session import Watch
+from navette.viewer.session import Session, Watch
 from navette.viewer.throttled_selector import ThrottledSelector
 from navette.viewer.web import HttpResponse, refuse
 
@@ -211,7 +212,7 @@ class ViewerServer:
 
     async def _client(self, connection: ServerConnection) -> None:
         session = self._hub.join(Outbox())
-        peer = Peer(connection, session)
+        peer = Peer(connection, session, partial(self._resume, session))
         self._peers.add(peer)
         peer.wake()
         try:
@@ -239,6 +240,10 @@ class ViewerServer:
         for peer in self._peers:
             peer.check_pending()
 
+    def _resume(self, session: Session) -> None:
+        if session.is_suspended:
+            self._hub.resume(session)
+
     def _wake_clients(self) -> None:
         for peer in self._peers:
             peer.wake()
@@ -252,6 +257,9 @@ class ViewerServer:
 
     def _run_period(self) -> None:
         self._on_period()
+        for peer in self._peers:
+            if peer.is_stalled and not peer.session.is_suspended:
+                self._hub.suspend(peer.session)
         self._wake_clients()
         if not self._stop.is_set():
             self._loop.call_later(PERIOD_S, self._run_period)

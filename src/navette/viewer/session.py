@@ -92,6 +92,9 @@ class Session:
     all_parameters: bool = False
     wants_graph: bool = False
     wants_nodes: bool = False
+    is_suspended: bool = False
+    """The client does not read: its subscriptions to streams deliver nothing."""
+    suspended_channels: set[int] = field(default_factory=set)
     pending: int = 0
     calls: set[CallId] = field(default_factory=set)  # of services, without a response
 

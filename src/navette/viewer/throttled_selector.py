@@ -12,17 +12,14 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.viewer.token_bucket import TokenBucket
-
-_CPU_WEIGHT = 3.0  # the most that a second of CPU time counts
+from navette.viewer.work_time import WorkTime
 
 
 class ThrottledSelector(selectors.DefaultSelector):
     """Selector that sleeps while its thread has worked more than its share.
 
-    Work is CPU time of the thread outside :meth:`select`. On a machine that is short of
-    CPU time it counts up to three times, as the thread takes more of what the process
-    receives; but not the whole wall time: a thread that waits for the interpreter
-    delays no node, and an operator's command must not wait for a debt of others.
+    Work (:class:`~navette.viewer.work_time.WorkTime`) is what the thread does outside
+    :meth:`select`.
 
     Args:
         share: seconds of work per second.
@@ -42,20 +39,15 @@ class ThrottledSelector(selectors.DefaultSelector):
     ) -> None:
         super().__init__()
         self._bucket = TokenBucket(share, burst_s, now_s)
-        self._now_s, self._cpu_s = now_s, cpu_s
+        self._work = WorkTime(now_s, cpu_s)  # begun in the thread whose time counts
         self._sleep = sleep or threading.Event().wait
-        # Wall and CPU time; set in the thread whose time counts.
-        self._selected_s: tuple[float, float] | None = None
 
     def select(self, timeout: float | None = None) -> Any:
-        if self._selected_s is not None:
-            wall_s = self._now_s() - self._selected_s[0]
-            cpu_s = self._cpu_s() - self._selected_s[1]
-            self._bucket.take(min(wall_s, _CPU_WEIGHT * cpu_s))
+        self._bucket.take(self._work.elapsed_s())
         wait_s = self._bucket.wait_s()
         if wait_s:
             self._sleep(wait_s)
             timeout = 0.0
         events = super().select(timeout)
-        self._selected_s = self._now_s(), self._cpu_s()
+        self._work.begin()
         return events

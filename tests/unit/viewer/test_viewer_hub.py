@@ -335,3 +335,46 @@ def test_queued_bytes_are_counted_until_they_are_sent() -> None:
     outbox.pop()
     outbox.sent()
     assert outbox.size == 0
+
+
+def test_a_client_that_does_not_read_has_no_streams_until_it_reads(
+    bench: Bench,
+) -> None:
+    bench.hub.set_topics([SCAN, MAP])
+    scan, grid = bench.channel("/lidar"), bench.channel("/map")
+    slow, other = bench.join(), bench.join()
+    bench.subscribe(slow, 1, scan.id)
+    bench.subscribe(slow, 2, grid.id)
+    bench.program.take()
+    bench.hub.suspend(slow)
+    assert bench.program.take() == [("unwatch", "/lidar", None)]
+
+    bench.subscribe(other, 1, scan.id)
+    assert bench.program.take() == [("watch", "/lidar", None)]
+    bench.hub.message(Watch(scan, None), 5, b"scan")
+    bench.hub.message(Watch(grid, slow.id), 6, b"map")
+    assert sent(slow.outbox) == [message_data(2, 6, b"map")]
+    assert sent(other.outbox) == [message_data(1, 5, b"scan")]
+
+    bench.hub.resume(slow)
+    bench.hub.message(Watch(scan, None), 7, b"new")
+    assert sent(slow.outbox) == [message_data(1, 7, b"new")]
+    bench.ask(other, op="unsubscribe", subscriptionIds=[1])
+    bench.ask(slow, op="unsubscribe", subscriptionIds=[1])
+    assert bench.program.take() == [("unwatch", "/lidar", None)]
+
+
+def test_a_suspended_client_changes_its_subscriptions(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    scan = bench.channel("/lidar")
+    slow = bench.join()
+    bench.hub.suspend(slow)
+    assert bench.subscribe(slow, 1, scan.id) == []
+    bench.hub.message(Watch(scan, None), 5, b"scan")
+    assert not slow.outbox
+    assert bench.ask(slow, op="unsubscribe", subscriptionIds=[1]) == []
+    bench.hub.resume(slow)
+    bench.hub.leave(slow)
+    calls = bench.program.take()
+    assert calls.count(("watch", "/lidar", None)) == 1
+    assert calls[-1] == ("unwatch", "/lidar", None)

@@ -325,6 +325,23 @@ def test_a_client_that_never_reads_loses_frames_and_does_not_slow_the_robot(
         assert got == sorted(got)
 
 
+def test_no_camera_is_rendered_for_a_client_that_never_reads(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("navette.viewer.peer._STALL_S", 0.1)
+    image = Image(data=np.zeros(3_000_000, np.uint8))
+    with Program(Talker) as program, NonReadingClient(program.address) as deaf:
+        talker = program.nodes[0]
+        assert isinstance(talker, Talker)
+        with Client(program.address) as client:
+            camera = client.wait_for_topic("/camera")["id"]
+        deaf.send(op="subscribe", subscriptions=[{"id": 1, "channelId": camera}])
+        while not program.do(talker.camera.get_subscription_count):
+            pass
+        while program.do(talker.camera.get_subscription_count):
+            program.do(lambda: talker.camera.publish(image))
+
+
 def test_a_client_that_requests_and_never_reads_affects_no_other(
     tmp_path: Path,
 ) -> None:
