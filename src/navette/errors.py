@@ -17,8 +17,16 @@ NavetteError
                                         instance of the original class
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+
+def join_names(names: Sequence[str], most: int) -> str:
+    """Join names with commas; of more than ``most``, the rest is a number."""
+    if len(names) <= most:
+        return ", ".join(names)
+    return f"{', '.join(names[:most])} and {len(names) - most} more"
 
 
 class NavetteError(Exception):
@@ -68,8 +76,8 @@ class UnknownNameError(NavetteError, LookupError):
 
     @classmethod
     def of(cls, kind: str, name: str, known: list[str]) -> "UnknownNameError":
-        listed = ", ".join(sorted(known)) or "none"
-        return cls(f"unknown {kind} {name!r}; known: {listed}")
+        names = join_names(sorted(known), most=200) or "none"
+        return cls(f"unknown {kind} {name!r}; known: {names}")
 
 
 class FileFormatError(NavetteError, ValueError):

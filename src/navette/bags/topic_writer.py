@@ -12,7 +12,7 @@ from navette.bags.bag import (
     MetadataRecord,
     RecordedMessage,
 )
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, join_names
 
 _NAMED = 3
 
@@ -45,12 +45,9 @@ class Losses:
         """One line for each kind: number and names."""
         lines = []
         for kind, names in self._counts.items():
-            shown = ", ".join(list(names)[:_NAMED])
-            more = len(names) - _NAMED
-            rest = f" and {more} more" if more > 0 else ""
             count = sum(names.values())
             counted = _singular(kind) if count == 1 else kind
-            lines.append(f"{count} {counted} ({shown}{rest})")
+            lines.append(f"{count} {counted} ({join_names(list(names), _NAMED)})")
         return lines
 
 

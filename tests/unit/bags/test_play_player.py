@@ -197,6 +197,15 @@ def test_topics_are_selected() -> None:
         Player(both, PlayOptions(exclude="."))
 
 
+def test_thousands_of_topics_are_refused_unless_some_are_chosen() -> None:
+    names = [f"/t{i}" for i in range(4001)]
+    with pytest.raises(InvalidValueError, match="4001 topics; at most 4000 are played"):
+        PlayOptions().choose(names)
+    assert PlayOptions(regex="^/t7$").choose(names) == ("/t7",)
+    with pytest.raises(InvalidValueError, match=r"/t98, /t99 and 3901 more$"):
+        PlayOptions(exclude=".").choose(names)
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -444,7 +444,7 @@ def test_which_processes_are_navette(words: tuple[str, ...], expected: bool) -> 
 def test_words() -> None:
     assert [plural(n, "node") for n in (0, 1, 2)] == ["no nodes", "1 node", "2 nodes"]
     assert listed("dacb") == "a, b, c, d"
-    assert listed("abcdefgh", most=3) == "a, b, c and 5 more"
+    assert listed("abcdefgh") == "a, b, c, d, e, f and 2 more"
 
 
 def test_the_report() -> None:

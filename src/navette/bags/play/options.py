@@ -5,10 +5,12 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from navette.errors import InvalidValueError, UnknownNameError
+from navette.errors import InvalidValueError, UnknownNameError, join_names
 
 MIN_RATE = 0.001
 MAX_RATE = 10_000.0
+# The time to declare n publishers on a Zenoh session grows with n²: 4 s for 4,000.
+MAX_TOPICS = 4000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +54,7 @@ class PlayOptions:
 
         Raises:
             UnknownNameError: a named topic was not recorded.
-            InvalidValueError: no topic is selected.
+            InvalidValueError: no topic is selected, or too many.
         """
         known = list(dict.fromkeys(names))
         by_full_name = {_full(name): name for name in known}
@@ -63,7 +65,13 @@ class PlayOptions:
         chosen = tuple(n for n in known if self._takes(n, wanted))
         if not chosen:
             raise InvalidValueError(
-                f"no topic is selected; recorded topics: {', '.join(known) or 'none'}"
+                "no topic is selected; recorded topics: "
+                f"{join_names(known, most=100) or 'none'}"
+            )
+        if len(chosen) > MAX_TOPICS:
+            raise InvalidValueError(
+                f"{len(chosen)} topics; at most {MAX_TOPICS} are played: "
+                "choose some by name or regular expression"
             )
         return chosen
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from navette.errors import join_names
+
 
 class Rating(Enum):
     """Severity; the value is the printed mark."""
@@ -54,9 +56,6 @@ def plural(number: int, thing: str) -> str:
     return f"{number or 'no'} {thing}{'' if number == 1 else 's'}"
 
 
-def listed(names: Iterable[str], most: int = 6) -> str:
-    """Join names with commas; the rest of a long list is a number."""
-    every = sorted(names)
-    if len(every) <= most:
-        return ", ".join(every)
-    return f"{', '.join(every[:most])} and {len(every) - most} more"
+def listed(names: Iterable[str]) -> str:
+    """Join the sorted names with commas; of many, the rest is a number."""
+    return join_names(sorted(names), most=6)
