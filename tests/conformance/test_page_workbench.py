@@ -1,4 +1,4 @@
-"""The page of `navette demo` in Chromium: goals, panels, run control, sizes, themes."""
+"""The page of `navette demo` in Chromium and Firefox: goals, panels, run control."""
 
 import json
 import os
@@ -18,6 +18,12 @@ from test_viewer_javascript import JAVASCRIPT
 from free_ports import free_port
 
 pytestmark = pytest.mark.long
+
+
+BROWSERS = {
+    "chromium": ("chromium", "chromium-browser"),
+    "firefox": ("firefox-esr", "firefox"),
+}
 
 
 class Demo:
@@ -68,18 +74,19 @@ def demo(tmp_path: Path) -> Iterator[Demo]:
 class Person:
     """A part of the script with the page of a demo."""
 
-    def __init__(self, part: str, demo: Demo, folder: Path) -> None:
-        chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    def __init__(self, part: str, browser: str, demo: Demo, folder: Path) -> None:
+        names = BROWSERS[browser]
+        executable = next(filter(None, map(shutil.which, names)), None)
         node = shutil.which("node")
-        if chromium is None or node is None:
-            pytest.skip("Chromium or Node.js is not installed")
+        if executable is None or node is None:
+            pytest.skip(f"{names[0]} or Node.js is not installed")
         if not (JAVASCRIPT / "node_modules").is_dir():
             pytest.skip(
                 "npm packages are missing: npm ci --prefix tests/conformance/js"
             )
         script = str(JAVASCRIPT / "workbench.mjs")
         self._process = subprocess.Popen(
-            [node, script, part, demo.url, chromium, str(folder)],
+            [node, script, part, demo.url, executable, str(folder)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -109,17 +116,20 @@ class Person:
 def person(
     request: pytest.FixtureRequest, demo: Demo, tmp_path: Path
 ) -> Iterator[Person]:
-    made = Person(request.param, demo, tmp_path)
+    made = Person(*request.param, demo, tmp_path)
     yield made
     made.close()
 
 
-def part(name: str) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("person", [name], indirect=True)
+def part(name: str, *browsers: str) -> pytest.MarkDecorator:
+    parts = [(name, browser) for browser in browsers or ("chromium",)]
+    return pytest.mark.parametrize(
+        "person", parts, indirect=True, ids=lambda each: each[1]
+    )
 
 
 @pytest.mark.slow
-@part("goals")
+@part("goals", *BROWSERS)
 def test_the_map_grows_and_the_robot_arrives_at_goals(person: Person) -> None:
     seen = person.seen()
     first, last = seen["known"]
@@ -130,7 +140,7 @@ def test_the_map_grows_and_the_robot_arrives_at_goals(person: Person) -> None:
 
 
 @pytest.mark.slow
-@part("panels")
+@part("panels", *BROWSERS)
 def test_panels_display_data_and_control_the_run(person: Person) -> None:
     seen = person.seen()
     assert seen["log"]
@@ -155,7 +165,7 @@ def test_a_thumb_takes_over_and_stops(person: Person) -> None:
 
 
 @pytest.mark.slow
-@part("restart")
+@part("restart", *BROWSERS)
 def test_the_page_returns_with_the_server(person: Person, demo: Demo) -> None:
     assert person.read() == "end\n"
     demo.stop()

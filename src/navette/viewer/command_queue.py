@@ -63,7 +63,7 @@ class CommandQueue:
 
         Args:
             key: a queued command of the same key is dropped.
-            is_next: before all other commands; for those that end work.
+            is_next: before all other commands; for commands that end work.
         """
         with self._lock:
             name = next(self._numbers) if key is None else (key,)

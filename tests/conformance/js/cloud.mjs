@@ -1,14 +1,10 @@
 // A browser on the live view's page: shows a point cloud, prints what was drawn.
 //
 //   node cloud.mjs http://127.0.0.1:PORT CHROMIUM [SCREENSHOT.png]
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [url, executablePath, screenshot] = process.argv.slice(2);
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch(executablePath);
 try {
   const page = await browser.newPage({ viewport: { width: 1100, height: 900 } });
   const problems = [];

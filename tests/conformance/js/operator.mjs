@@ -3,14 +3,10 @@
 //   node operator.mjs http://127.0.0.1:PORT CHROMIUM TRIES [only-keys]
 //
 // Prints the times (ms since the epoch) of the key presses, and what the page shows.
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [url, executablePath, tries, only] = process.argv.slice(2);
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch(executablePath);
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 try {
   const page = await browser.newPage({ viewport: { width: 360, height: 800 } }); // a phone

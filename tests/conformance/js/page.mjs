@@ -1,14 +1,10 @@
 // A browser on the live view's page: prints what it reads, sends a goal.
 //
 //   node page.mjs http://127.0.0.1:PORT CHROMIUM
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [url, executablePath] = process.argv.slice(2);
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch(executablePath);
 try {
   const page = await browser.newPage();
   const problems = [];

@@ -5,11 +5,11 @@
 // Prints by picture: mean difference of brightness (0 to 255), share of pixels that differ
 // by more than 48. Stored pictures are reduced to a quarter: fonts differ between machines.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [url, executablePath, stored, made, mode] = process.argv.slice(2);
 const SIZES = { desktop: [1440, 900], tablet: [820, 1180], phone: [360, 800] };
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu"] });
+const browser = await launch(executablePath);
 
 /** Reduce a picture to a quarter; with another one of that size, compare. */
 async function reduce(page, picture, other) {

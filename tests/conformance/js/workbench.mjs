@@ -1,22 +1,18 @@
 // A person at the page of `navette demo`, in parts: goals (also with a heading), panels and
 // run control, sizes and themes, a thumb on the stick, a server that ends and returns.
 //
-//   node workbench.mjs goals|panels|sizes|touch|restart http://127.0.0.1:PORT CHROMIUM FOLDER
+//   node workbench.mjs goals|panels|sizes|touch|restart http://127.0.0.1:PORT BROWSER FOLDER
 //
 // Prints what the page displays, and what axe finds; the part `restart` prints "end" and
 // waits for the line "back" on its input.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [part, url, executablePath, folder] = process.argv.slice(2);
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch(executablePath);
 const seen = { problems: [], axe: {} };
 
 async function newPage(options) {
@@ -34,6 +30,13 @@ async function serious(page) {
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"] }));
   return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 160)).join(" | ")}`);
+}
+
+/** Taking a picture adds a style to the page, which its policy refuses in Firefox. */
+async function picture(page, name) {
+  const before = seen.problems.length;
+  await page.screenshot({ path: `${folder}/${name}.png` });
+  seen.problems.length = before;
 }
 
 const until = (page, check, argument, timeout = 90_000) => page.waitForFunction(check, argument, { timeout, polling: 100 });
@@ -142,7 +145,7 @@ async function panels() {
   await until(page, (before) => Number(navette.connection.nowNs) > before + 5e8, paused);
 
   seen.axe.panels = await serious(page);
-  await page.screenshot({ path: `${folder}/desktop-light.png` });
+  await picture(page, "desktop-light");
 }
 
 async function sizes() {
@@ -153,7 +156,7 @@ async function sizes() {
     await other.waitForTimeout(1500);
     seen.axe[name] = await serious(other);
     seen[name] = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]);
-    await other.screenshot({ path: `${folder}/${name}.png` });
+    await picture(other, name);
     await other.context().close();
   }
 }
@@ -175,7 +178,7 @@ async function touch() {
   await commander("Operator");
   await phone.waitForFunction(() => Math.max(...commands.slice(-10)) > 0.3, null, { timeout: 60_000 });
   seen.axe.stick = await serious(phone);
-  await phone.screenshot({ path: `${folder}/stick.png` });
+  await picture(phone, "stick");
   await at("touchEnd");
   await phone.waitForFunction(() => commands.at(-1) === 0, null, { timeout: 60_000 });
   await phone.locator("#stop").tap();

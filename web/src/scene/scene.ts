@@ -34,6 +34,7 @@ export class Scene implements Surroundings {
   #chosenFrame: string | null = null;
   #items: readonly DrawItem[] = [];
   #frameTimes: number[] = [];
+  #hasPicture = false;
   readonly #listeners = new Set<() => void>();
 
   constructor(
@@ -175,6 +176,10 @@ export class Scene implements Surroundings {
     this.#items = this.#collect(fixed);
     const overlay = this.overlay().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 }));
     this.#renderer.draw([...this.#items, ...overlay], this.viewing.viewpoint, this.theme.colour("unknown"));
+    if (!this.#hasPicture && this.robot.baseFrame !== null && fixed !== null) {
+      this.#hasPicture = true;
+      performance.mark("navette:picture");
+    }
   };
 
   #moveView(fixed: string | null): void {

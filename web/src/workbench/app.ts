@@ -66,6 +66,7 @@ export class App {
     this.#phone.addEventListener("change", () => void this.#arrange(this.#layout()));
     const layout = rememberedLayout() ?? SHIPPED[0]!;
     await this.#arrange(layout);
+    performance.mark("navette:interactive");
     await this.#applyScene(layout);
   }
 
