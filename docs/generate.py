@@ -38,6 +38,8 @@ def _section(name: str, cls: Any) -> str:
         "|---|---|---|---|---|",
     ]
     lines += [_parameter_row(field) for field in _fields(cls.PARAMS)]
+    for prefix, record in cls.PARAM_GROUPS.items():
+        lines += [_parameter_row(field, prefix) for field in _fields(record)]
     return "\n".join([*lines, ""])
 
 
@@ -45,11 +47,12 @@ def _fields(params: type[Params]) -> "tuple[dataclasses.Field[Any], ...]":
     return dataclasses.fields(params)
 
 
-def _parameter_row(field: "dataclasses.Field[Any]") -> str:
+def _parameter_row(field: "dataclasses.Field[Any]", prefix: str = "") -> str:
     info = info_of(field)
     allowed = info.allowed() if info.allowed() != "any" else ""
+    name = prefix + field.name
     return (
-        f"| `{field.name}` | `{_shown(field.default)}` | {info.unit} | {allowed} "
+        f"| `{name}` | `{_shown(field.default)}` | {info.unit} | {allowed} "
         f"| {info.meaning} |"
     )
 

@@ -89,6 +89,12 @@ DIMENSIONLESS = (
     # Names of Nav2's AMCL, in metres, radians and seconds; and shares.
     r"transform_tolerance|alpha[1-5]|update_min_[da]|laser_\w+|sigma_hit|z_\w+",
     r"speed_base|speed_multiplier|independent_beams|pf_\w+|recovery_alpha_\w+|(lost|localized)_match",
+    # Names of twist_mux, in seconds.
+    r"timeout|hold",
+    # Names of Nav2's layers, in metres and seconds; and a probability.
+    r"origin_z|z_resolution|(min|max)_obstacle_height|max_drop_height|phi",
+    r"(obstacle|raytrace)_(min|max)_range|mark_threshold",
+    r"expected_update_rate|no_readings_timeout",
 )
 
 
@@ -191,6 +197,7 @@ def test_a_public_class_name_occurs_once() -> None:
 
 RECORDS: tuple[type[Params], ...] = (
     *(node_class.PARAMS for _, node_class in NODE_CLASSES),
+    *(each for _, kind in NODE_CLASSES for each in kind.PARAM_GROUPS.values()),
     RecorderParams,
     ViewerParams,
     NavigationEnvParams,

@@ -22,6 +22,7 @@ from navette.cli.commands import LazyGroup
 from navette.cli.completing_installed import (
     complete_robots,
     complete_runs,
+    complete_sensors,
     complete_worlds,
 )
 from navette.cli.completion import discard_stderr, is_completing
@@ -55,6 +56,17 @@ Robot = Annotated[
         help="A built-in robot (jackal, turtlebot3_burger, husky, racecar, mecanum,"
         " course) or a model file. Default: the robot of the world.",
         complete=complete_robots,
+    ),
+]
+Sensors = Annotated[
+    list[str] | None,
+    Option(
+        "--sensor",
+        metavar="TYPE[@PLACE]",
+        help="Mount a sensor on the robot: d435 (depth camera), vlp16, os1_32 (3D"
+        " lidars), urg04lx, hc_sr04 (sonar), bumper, neo_m8n, zed_f9p (GNSS), at"
+        " front, rear, left, right or top. Repeat for several.",
+        complete=complete_sensors,
     ),
 ]
 Start = Annotated[
@@ -174,6 +186,7 @@ def app(
 @app.command(panel=DRIVE)
 def demo(
     robot: Robot = None,
+    sensor: Sensors = None,
     methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
     view: ViewOptions = DEFAULT_VIEW,
@@ -190,6 +203,7 @@ def demo(
     options = RunOptions(
         world="arena",
         robot=robot,
+        sensors=tuple(sensor or ()),
         goals=demo_goals(),
         tree=tree,
         speed=parse_speed(speed or "1"),
@@ -203,6 +217,7 @@ def demo(
 def sim(
     world: World = "arena",
     robot: Robot = None,
+    sensor: Sensors = None,
     start: Start = None,
     goal: Goals = None,
     headless: Headless = False,
@@ -232,6 +247,7 @@ def sim(
     options = RunOptions(
         world=world,
         robot=robot,
+        sensors=tuple(sensor or ()),
         start=Pose2(start[0], start[1], math.radians(start[2])) if start else None,
         goals=tuple(parse_goal(text) for text in goal or ()),
         headless=headless,

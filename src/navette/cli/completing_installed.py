@@ -84,6 +84,14 @@ def complete_robots(incomplete: str) -> list[str]:
     return chosen(incomplete, robot_names())
 
 
+def complete_sensors(incomplete: str) -> list[str]:
+    """Complete sensors of the catalogue, and where they are mounted."""
+    from navette.sim.sensor_catalogue import CATALOGUE, PLACES
+
+    names = [f"{kind}@{place}" for kind in CATALOGUE for place in PLACES]
+    return chosen(incomplete, [*CATALOGUE, *(names if "@" in incomplete else ())])
+
+
 def _types(incomplete: str, *kinds: str) -> list[str]:
     from navette.ros2.packages.rosidl_runtime_py import get_interfaces
 

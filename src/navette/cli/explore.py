@@ -16,6 +16,7 @@ from navette.cli.app import (
     MaxTime,
     Robot,
     Seed,
+    Sensors,
     Speed,
     World,
 )
@@ -49,6 +50,7 @@ _REASONS = {
 def explore(
     world: World = "arena",
     robot: Robot = None,
+    sensor: Sensors = None,
     running: Annotated[
         bool,
         Option("--running", help="Explore with the running robot, not the simulator."),
@@ -82,6 +84,7 @@ def explore(
         options = RunOptions(
             world=world,
             robot=robot,
+            sensors=tuple(sensor or ()),
             headless=headless,
             speed=parse_speed(speed or ("max" if headless else "1")),
             seed=seed,

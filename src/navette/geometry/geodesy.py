@@ -74,3 +74,14 @@ class LocalPlane:
         )
         azimuth = math.radians(line["azi1"])
         return line["s12"] * math.sin(azimuth), line["s12"] * math.cos(azimuth)
+
+    def point_at(self, east: float, north: float, altitude_m: float) -> GeoPoint:
+        """Return the point at metres east and north of the origin."""
+        azimuth = math.degrees(math.atan2(east, north))
+        found = Geodesic.WGS84.Direct(
+            self.origin.latitude_deg,
+            self.origin.longitude_deg,
+            azimuth,
+            math.hypot(east, north),
+        )
+        return GeoPoint(found["lat2"], found["lon2"], altitude_m)

@@ -18,7 +18,8 @@ from navette.gym.params import NavigationEnvParams
 from navette.gym.route import Point
 from navette.gym.worlds import NodeParameters, WorldSource
 from navette.sim import Scene, Simulator
-from navette.sim.scene import LidarSensor, MecanumDrive
+from navette.sim.scene import MecanumDrive
+from navette.sim.sensor_specs import LidarSensor
 from navette.sim.sensors import sensors_of
 
 _OPTIONS = ("start", "goal", "world_seed")

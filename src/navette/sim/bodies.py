@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Transform3, quaternion_from_rpy
 from navette.sim.scene import (
-    CameraSensor,
     Cylinder,
     Ellipsoid,
     Geometry,
@@ -26,6 +25,7 @@ from navette.sim.scene import (
     Link,
     Model,
 )
+from navette.sim.sensor_specs import CameraSensor
 
 # MuJoCo's cameras look along −z with y up, SDF's along +x with z up.
 _SENSOR_T_CAMERA = Transform3(

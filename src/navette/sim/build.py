@@ -22,6 +22,7 @@ from navette.sim.masks import ROBOT_GROUP
 from navette.sim.model_builder import ModelBuilder, carrier_of
 from navette.sim.scene import AckermannDrive, DiffDrive, MecanumDrive, Model, Scene
 from navette.sim.servos import add_servos, traction_name
+from navette.sim.surface import Surface
 
 # By default MuJoCo writes MUJOCO_LOG.TXT to the working directory.
 mujoco.set_mju_user_warning(logging.getLogger(__name__).warning)
@@ -63,6 +64,7 @@ class Compiled:
     is_robot: NDArray[np.bool_]
     is_ground: NDArray[np.bool_]
     is_obstacle: NDArray[np.bool_]
+    surfaces: dict[int, Surface]  # of the geoms that are not plain
 
     def mocap_of(self, body: str) -> int:
         """Return the index of a body whose pose is set, in MuJoCo's mocap arrays."""
@@ -158,6 +160,11 @@ def _index(
         is_robot=is_robot,
         is_ground=is_ground,
         is_obstacle=solid & ~is_ground,
+        surfaces={
+            i: builder.surfaces[name]
+            for i, name in enumerate(names)
+            if name in builder.surfaces
+        },
     )
 
 

@@ -20,6 +20,7 @@ from navette.sim.scene import (
     Scene,
     Shape,
 )
+from navette.sim.surface import Surface
 from navette.sim.trajectory import Trajectory, Waypoint
 
 
@@ -38,12 +39,17 @@ class World:
         *,
         height: float = 1.0,
         yaw: float = 0.0,
+        base: float = 0.0,
         colour: Colour = (0.36, 0.47, 0.58, 1.0),
+        surface: Surface | None = None,
     ) -> Self:
-        """Add a box on the floor; size along its own x and y (m)."""
+        """Add a box on the floor; size along its own x and y (m).
+
+        ``base`` is the height of its underside; ``surface`` its answer to lasers.
+        """
         _check_positive("box", (*size, height))
-        pose = _standing(centre, height, yaw)
-        return self._add("box", Box((*size, height)), pose, colour)
+        pose = _standing(centre, height, yaw, base)
+        return self._add("box", Box((*size, height)), pose, colour, surface)
 
     def add_cylinder(
         self,
@@ -51,12 +57,15 @@ class World:
         radius: float,
         *,
         height: float = 1.0,
+        base: float = 0.0,
         colour: Colour = (0.80, 0.50, 0.33, 1.0),
+        surface: Surface | None = None,
     ) -> Self:
-        """Add an upright cylinder on the floor (m)."""
+        """Add an upright cylinder on the floor, or ``base`` above it (m)."""
         _check_positive("cylinder", (radius, height))
-        pose = _standing(centre, height, 0.0)
-        return self._add("cylinder", Cylinder(radius, height), pose, colour)
+        pose = _standing(centre, height, 0.0, base)
+        shape = Cylinder(radius, height)
+        return self._add("cylinder", shape, pose, colour, surface)
 
     def add_walls(
         self,
@@ -123,8 +132,15 @@ class World:
     def scene(self) -> Scene:
         return Scene(name=self._name, models=tuple(self._models))
 
-    def _add(self, kind: str, shape: Shape, pose: Transform3, colour: Colour) -> Self:
-        geometry = Geometry(name=kind, shape=shape, colour=colour)
+    def _add(
+        self,
+        kind: str,
+        shape: Shape,
+        pose: Transform3,
+        colour: Colour,
+        surface: Surface | None = None,
+    ) -> Self:
+        geometry = Geometry(name=kind, shape=shape, colour=colour, surface=surface)
         self._models.append(
             Model(
                 name=f"{kind}_{len(self._models)}",
@@ -136,8 +152,10 @@ class World:
         return self
 
 
-def _standing(centre: tuple[float, float], height: float, yaw: float) -> Transform3:
-    return Transform3((*centre, height / 2), quaternion_from_yaw(yaw))
+def _standing(
+    centre: tuple[float, float], height: float, yaw: float, base: float = 0.0
+) -> Transform3:
+    return Transform3((*centre, base + height / 2), quaternion_from_yaw(yaw))
 
 
 def _check_positive(what: str, values: Sequence[float]) -> None:

@@ -7,10 +7,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.sim.instant import Instant
 from navette.sim.masks import SEEN, SEEN_SOLID
 from navette.sim.mount import Mount
 from navette.sim.ray_kernels import cast_image
-from navette.sim.scene import CameraSensor, Scene
+from navette.sim.scene import Scene
+from navette.sim.sensor_specs import CameraSensor
 from navette.sim.shading import shade
 from navette.sim.shape_table import ShapeTable
 
@@ -34,8 +36,9 @@ class Camera:
         self._sun = sun / np.linalg.norm(sun)
         self._sky = np.array(scene.sky[:3])
 
-    def render(self, model: mujoco.MjModel, data: mujoco.MjData) -> Image:
-        """Render the current image (kinematics must be up to date)."""
+    def read(self, instant: Instant, rng: np.random.Generator) -> Image:
+        """Render the image of an instant."""
+        model, data = instant.model, instant.data
         s, shapes = self.sensor, self._shapes
         shapes.update(data)
         origin, world_R_camera = self.mount.world(data)

@@ -13,8 +13,9 @@ import numpy as np
 
 from navette.errors import ParameterError
 from navette.sim.camera import Image
+from navette.sim.instant import Instant
 from navette.sim.masks import SEEN, SEEN_SOLID
-from navette.sim.scene import CameraSensor
+from navette.sim.sensor_specs import CameraSensor
 
 _log = logging.getLogger(__name__)
 
@@ -88,10 +89,10 @@ class GlCamera:
         self._option.geomgroup[:] = 0
         self._option.geomgroup[[SEEN_SOLID, SEEN]] = 1
 
-    def render(self, model: mujoco.MjModel, data: mujoco.MjData) -> Image:
-        """Render the current image (kinematics must be up to date)."""
-        mujoco.mj_camlight(model, data)
-        self._renderer.update_scene(data, self._camera, self._option)
+    def read(self, instant: Instant, rng: np.random.Generator) -> Image:
+        """Render the image of an instant."""
+        mujoco.mj_camlight(instant.model, instant.data)
+        self._renderer.update_scene(instant.data, self._camera, self._option)
         return np.asarray(self._renderer.render(), dtype=np.uint8)
 
 

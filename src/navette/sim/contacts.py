@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contacts of the robot with obstacles."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -32,6 +34,14 @@ class ContactEpisode:
     place: tuple[float, float, float]
 
 
+class Touch(NamedTuple):
+    """The newest contact of a geom of the robot with another one, and its points."""
+
+    geom: int
+    places: list[tuple[float, float, float]]
+    now_ns: int
+
+
 class ContactMonitor:
     """Collects contacts of the robot with obstacles.
 
@@ -46,6 +56,7 @@ class ContactMonitor:
         self._kind = np.where(compiled.is_robot, part, other)
         self.episodes: list[ContactEpisode] = []
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
+        self._touches: dict[tuple[int, int], Touch] = {}  # by the pair of geoms
 
     @property
     def count(self) -> int:
@@ -54,6 +65,12 @@ class ContactMonitor:
     def reset(self) -> None:
         self.episodes.clear()
         self._open.clear()
+        self._touches.clear()
+
+    @property
+    def touches(self) -> Iterable[Touch]:
+        """The newest contact of each pair of geoms that ever touched."""
+        return self._touches.values()
 
     def observe(self, data: mujoco.MjData, now_ns: int) -> bool:
         """Record the contacts of the last physics step; return whether one exists."""
@@ -66,6 +83,11 @@ class ContactMonitor:
             mine, other = pair if self._robot[pair[0]] else pair[::-1]
             place = (float(x), float(y), float(z))
             self._note(self._owner[mine], self._owner[other], place, now_ns)
+            touch = self._touches.get((int(mine), int(other)))
+            if touch is None or touch.now_ns != now_ns:
+                touch = Touch(int(mine), [], now_ns)
+                self._touches[int(mine), int(other)] = touch
+            touch.places.append(place)
         return True
 
     def _note(

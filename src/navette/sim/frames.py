@@ -8,7 +8,8 @@ from navette.geometry import Transform3, quaternion_from_rpy
 from navette.sim.build import RobotIndex
 from navette.sim.params import SimParams
 from navette.sim.robot_state import moving_links
-from navette.sim.scene import CameraSensor, Link, Sensor
+from navette.sim.scene import Link
+from navette.sim.sensor_specs import CameraSensor, Sensor
 
 # Optical frames look along +z, with x to the right (REP 103).
 _CAMERA_T_OPTICAL = Transform3(

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Quaternion
+from navette.sim.instant import Instant
 from navette.sim.mount import Mount
-from navette.sim.robot_state import RobotState
-from navette.sim.scene import ImuSensor
+from navette.sim.sensor_specs import ImuSensor
 
 _LONGEST_MEAN_NS = 200_000_000
 
@@ -65,15 +65,9 @@ class Imu:
         if self._errors.turn_rate_bias > 0:
             self._bias = rng.normal(0.0, self._errors.turn_rate_bias, 3)
 
-    def read(
-        self,
-        state: RobotState,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        stamp_ns: int,
-        rng: np.random.Generator,
-    ) -> ImuReading:
-        """Return the current reading (kinematics must be up to date)."""
+    def read(self, instant: Instant, rng: np.random.Generator) -> ImuReading:
+        """Return the reading of an instant."""
+        model, data, state, stamp_ns, _ = instant
         position, world_R_sensor = self.mount.world(data)
         velocity, omega = state.point_velocity(position)
         acceleration = self._mean_acceleration(velocity, stamp_ns)

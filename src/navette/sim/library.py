@@ -8,12 +8,18 @@ from typing import Any
 
 import yaml
 
-from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
+from navette.errors import (
+    FileFormatError,
+    InvalidValueError,
+    ParameterError,
+    UnknownNameError,
+)
 from navette.files.untrusted.yaml_input import load_yaml
 from navette.params.plugins import load_attribute
 from navette.sim.mjcf import read_mjcf
+from navette.sim.mounting import with_sensors
 from navette.sim.occupancy_map import read_map
-from navette.sim.robot_file import model_of, read_robot_file
+from navette.sim.robot_file import RobotFile, model_of, read_robot_file
 from navette.sim.scene import Model, Scene
 from navette.sim.sdf import read_sdf
 from navette.sim.urdf import read_urdf_robot, read_urdf_world
@@ -122,14 +128,23 @@ def _described_robot(path: Path) -> Robot:
     """Return the robot of a YAML file with sizes, or with the name of a model file."""
     file = read_robot_file(path)
     if file.sizes is not None:
-        model = model_of(file.sizes)
+        model = _equipped(path, model_of(file.sizes), file)
         return Robot(
             model.name, model, None, _topic_names(path.parent), file.parameters
         )
     assert file.model is not None, "a robot's file has sizes or a model"
     if not file.model.is_file():
         raise FileFormatError(path, f"model: {file.model}: no such file")
-    return replace(load_robot(file.model), parameters=file.parameters)
+    robot = load_robot(file.model)
+    model = _equipped(path, robot.model, file)
+    return replace(robot, model=model, parameters=file.parameters)
+
+
+def _equipped(path: Path, model: Model, file: RobotFile) -> Model:
+    try:
+        return with_sensors(model, file.sensors.items())
+    except ParameterError as error:
+        raise FileFormatError(path, str(error)) from None
 
 
 def _installed_robot(name: str) -> Path | None:

@@ -7,12 +7,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.sim.build import Compiled
+from navette.sim.instant import Instant
 from navette.sim.masks import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
 from navette.sim.ray_kernels import cast_fan
-from navette.sim.scene import LidarSensor
+from navette.sim.sensor_specs import LidarSensor
 from navette.sim.shape_table import ShapeTable
+
+_LEVEL = np.zeros(1)  # elevation of the beams
 
 
 @dataclass(frozen=True)
@@ -39,13 +43,13 @@ class Lidar:
         sensor: LidarSensor,
         mount: Mount,
         params: SimParams,
-        model: mujoco.MjModel,
+        compiled: Compiled,
     ) -> None:
         self.sensor = sensor
         self.mount = mount
         self.set_noise(params)
         groups = (SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID)
-        self._shapes = ShapeTable(model, groups)
+        self._shapes = ShapeTable(compiled.model, groups, compiled.surfaces)
         n = sensor.samples
         self._angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
         self.angle_increment = (
@@ -67,16 +71,10 @@ class Lidar:
             np.zeros(3), np.eye(3), self._angles, 1.0, self._distance,
         )  # fmt: skip
 
-    def scan(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        stamp_ns: int,
-        rng: np.random.Generator,
-    ) -> Scan:
-        """Cast all beams in the current state (kinematics must be up to date)."""
-        s = self.sensor
-        distance = self._cast(model, data)
+    def read(self, instant: Instant, rng: np.random.Generator) -> Scan:
+        """Cast all beams."""
+        s, stamp_ns = self.sensor, instant.stamp_ns
+        distance = self._cast(instant.model, instant.data)
         ranges = np.where(distance <= s.range_max, distance, np.inf)
         if self._noise_m > 0:
             ranges += rng.normal(0.0, self._noise_m, s.samples)
@@ -99,12 +97,19 @@ class Lidar:
         shapes.update(data)
         origin, world_R_sensor = self.mount.world(data)
         reach = self.sensor.range_max
+        if shapes.has_surfaces:
+            pose = origin, world_R_sensor
+            rings = shapes.cast_rings(model, data, pose, self._angles, _LEVEL, reach)
+            self._distance[:] = rings[0]
+            return self._distance
         if shapes.has_others:
             beams = np.stack(
                 [np.cos(self._angles), np.sin(self._angles), 0 * self._angles], axis=1
             )
             beams_world = beams @ world_R_sensor.T
-            return shapes.cast_with_mujoco(model, data, origin, beams_world, reach)[0]
+            found = shapes.cast_with_mujoco(model, data, origin, beams_world, reach)
+            self._distance[:] = found[0]
+            return self._distance
         cast_fan(
             shapes.kind, shapes.size, shapes.position, shapes.rotation, origin,
             world_R_sensor, self._angles, reach, self._distance,

@@ -30,15 +30,14 @@ from navette.sim.lidar import Scan
 from navette.sim.robot_state import JointReadings, Motion, cross
 from navette.sim.scene import (
     Box,
-    CameraSensor,
     Capsule,
     Cylinder,
     Ellipsoid,
-    ImuSensor,
     Model,
     Shape,
     Sphere,
 )
+from navette.sim.sensor_specs import CameraSensor, ImuSensor
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)

@@ -20,6 +20,7 @@ from navette.sim.scene import (
     Scene,
 )
 from navette.sim.shape_geoms import add_geom, friction_of
+from navette.sim.surface import Surface
 
 _SERVO_TIME_S = 0.002  # time constant of the wheel speed servo; a longer one droops
 
@@ -33,6 +34,7 @@ class ModelBuilder:
         self.scene = scene
         self.owner: dict[str, str] = {}
         self.ground: set[str] = set()
+        self.surfaces: dict[str, Surface] = {}
         self.bodies: dict[tuple[str, str], str] = {}
         planes = [
             geometry.friction
@@ -113,6 +115,8 @@ class ModelBuilder:
     def _name(self, model: Model, link: Link, geometry: Geometry) -> str:
         name = f"{model.name}/{link.name}/{geometry.name}#{len(self.owner)}"
         self.owner[name] = f"{model.name}/{link.name}"
+        if geometry.surface is not None:
+            self.surfaces[name] = geometry.surface
         return name
 
     def _add_body(

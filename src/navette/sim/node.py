@@ -2,6 +2,7 @@
 """The simulated robot as a node."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from navette.errors import InvalidInputError
@@ -28,7 +29,10 @@ from navette.sim.frames import RobotFrames
 from navette.sim.params import CONTROL_PERIOD_S, FIXED_AT_START, SimParams
 from navette.sim.robot_state import Motion
 from navette.sim.run_control import RunControl
-from navette.sim.scene import CameraSensor, ImuSensor, LidarSensor, Scene, Sensor
+from navette.sim.scene import Scene
+from navette.sim.sensor_messages import hazards_message
+from navette.sim.sensor_outputs import SensorTopic, topics_of
+from navette.sim.sensor_specs import ContactSensor, Sensor
 from navette.sim.sensors import sensors_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
@@ -80,6 +84,13 @@ class SimNode(StageNode):
         Output.of(topics.IMU, "orientation, turn rate, specific force"),
         Output.of(topics.CAMERA, "image", rate_hz=30),
         Output.of(topics.CAMERA_INFO, "intrinsics of the camera", rate_hz=30),
+        Output.of(topics.DEPTH_IMAGE, "depth camera: metres, 32FC1", rate_hz=10),
+        Output.of(topics.DEPTH_INFO, "intrinsics of the depth camera", rate_hz=10),
+        Output.of(topics.DEPTH_POINTS, "a point for each pixel", rate_hz=10),
+        Output.of(topics.POINTS, "lidar with several rings", rate_hz=10),
+        Output.of(topics.SONAR, "range of the nearest echo", rate_hz=10),
+        Output.of(topics.HAZARDS, "the bumpers that are pressed", rate_hz=50),
+        Output.of(topics.FIX, "position on the Earth"),
         Output.of(topics.ODOMETRY, "estimated pose and velocity", rate_hz=50),
         Output.of(
             topics.WHEEL_ODOMETRY,
@@ -117,7 +128,10 @@ class SimNode(StageNode):
         self.simulator = Simulator(scene, self.params, start=start)
         for lidar in self.simulator.lidars:
             lidar.warm_up()
-        if not self.simulator.lidars:
+        self._sensor_topics = tuple(topics_of(self.simulator.compiled.robot.model))
+        #: The newest reading of each sensor: its topics share one.
+        self._readings: dict[tuple[type[Sensor], int], tuple[int, Any]] = {}
+        if topics.LIDAR.name not in {each.name for each in self._sensor_topics}:
             self.get_logger().warning(
                 "the robot has no laser scanner: without /lidar there is no costmap "
                 "and navigation does not drive the robot"
@@ -144,6 +158,7 @@ class SimNode(StageNode):
     def reset(self) -> None:
         """Reset robot and world to the start; the clock continues."""
         self.simulator.reset()
+        self._readings.clear()
         self._origin_ns = self.get_clock().now_ns
         self._contacts_reported = 0
 
@@ -234,14 +249,14 @@ class SimNode(StageNode):
             self._every(_ACTORS_HZ, self._publish_actors, topics.ACTORS.name)
         if self.frames.moving:
             self._every(p.joint_tf_rate_hz, self._publish_joint_tf, topics.TF.name)
-        self._create_sensor_timers(LidarSensor, topics.LIDAR.name, self._publish_scan)
-        self._create_sensor_timers(ImuSensor, topics.IMU.name, self._publish_imu)
-        self._create_sensor_timers(
-            CameraSensor, topics.CAMERA.name, self._publish_image
-        )
-        self._create_sensor_timers(
-            CameraSensor, topics.CAMERA_INFO.name, self._publish_info
-        )
+        for topic in self._sensor_topics:
+            self._add_publisher(topic)
+            publish = partial(self._publish_sensor, topic)
+            self._every(topic.sensor.rate_hz, publish, topic.name)
+        bumpers = self.simulator.devices[ContactSensor]
+        if bumpers:
+            rate_hz = max(each.sensor.rate_hz for each in bumpers)
+            self._every(rate_hz, self._publish_bumpers, topics.HAZARDS.name)
 
     def _serve_run_control(self) -> None:
         clock = self.context.clock
@@ -274,33 +289,41 @@ class SimNode(StageNode):
             elif not wanted and not timer.is_canceled():
                 timer.cancel()
 
-    def _create_sensor_timers(
-        self,
-        kind: type[Sensor],
-        topic: str,
-        publish: Callable[[str, int, str, int], None],
-    ) -> None:
-        """Create timers for all sensors of a kind; the first has the plain topic."""
+    def _add_publisher(self, topic: SensorTopic) -> None:
+        """Create the publisher of a further sensor of its kind."""
+        if topic.name not in self.publishers_by_topic:
+            like = self.publishers_by_topic[topic.output.topic.name]
+            self.publishers_by_topic[topic.name] = self.create_publisher(
+                like.msg_type, topic.name, like.qos_profile
+            )
+
+    def _publish_sensor(self, topic: SensorTopic, stamp_ns: int) -> None:
+        sensor, output = topic.sensor, topic.output
+        reading = None
+        if output.needs_reading:
+            reading = self._reading(type(sensor), topic.index, stamp_ns)
+        frame = self.frames.of_sensor(topic.link, sensor)
+        self.publish(topic.name, output.message(reading, sensor, stamp_ns, frame))
+
+    def _reading(self, kind: type[Sensor], index: int, stamp_ns: int) -> Any:
+        """Measure, at most once at a time."""
+        newest = self._readings.get((kind, index))
+        if newest is None or newest[0] != stamp_ns:
+            newest = stamp_ns, self.simulator.read(kind, index)
+            self._readings[kind, index] = newest
+        return newest[1]
+
+    def _publish_bumpers(self, stamp_ns: int) -> None:
         model = self.simulator.compiled.robot.model
-        for index, (link, sensor) in enumerate(sensors_of(model, kind)):
-            own = topic if index == 0 else self._further_topic(topic, sensor)
-            frame = self.frames.of_sensor(link, sensor)
-
-            def tick(
-                stamp: int, own: str = own, index: int = index, frame: str = frame
-            ) -> None:
-                publish(own, index, frame, stamp)
-
-            self._every(sensor.rate_hz, tick, own)
-
-    def _further_topic(self, topic: str, sensor: Sensor) -> str:
-        plain = "".join(c if c.isalnum() else "_" for c in sensor.name)
-        name = f"{topic}/{plain}"
-        like = self.publishers_by_topic[topic]
-        self.publishers_by_topic[name] = self.create_publisher(
-            like.msg_type, name, like.qos_profile
-        )
-        return name
+        states = [
+            (
+                self.frames.of_sensor(link, sensor),
+                self._reading(ContactSensor, index, stamp_ns),
+            )
+            for index, (link, sensor) in enumerate(sensors_of(model, ContactSensor))
+        ]
+        message = hazards_message(states, stamp_ns, self.frames.base)
+        self.publish(topics.HAZARDS.name, message)
 
     def _beat(self) -> None:
         self._advance()
@@ -396,22 +419,3 @@ class SimNode(StageNode):
         poses = self.simulator.actors.poses(self.simulator.now_ns)
         message = messages.actors_message(poses, stamp_ns, self.params.map_frame)
         self.publish(topics.ACTORS.name, message)
-
-    def _publish_scan(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
-        period_s = 1.0 / self.simulator.lidars[index].sensor.rate_hz
-        scan = self.simulator.scan(index)
-        self.publish(topic, messages.scan_message(scan, stamp_ns, frame, period_s))
-
-    def _publish_imu(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
-        sensor = self.simulator.imus[index].sensor
-        reading = self.simulator.imu(index)
-        self.publish(topic, messages.imu_message(reading, sensor, stamp_ns, frame))
-
-    def _publish_image(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
-        pixels = self.simulator.image(index)
-        self.publish(topic, messages.image_message(pixels, stamp_ns, frame))
-
-    def _publish_info(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
-        sensor = self.simulator.cameras[index].sensor
-        info = messages.camera_info_message(sensor, stamp_ns, frame)
-        self.publish(topic, info)

@@ -25,15 +25,25 @@ Point2 = tuple[float, float]
 
 def footprint_of(model: Model) -> tuple[Point2, ...]:
     """Convex outline of the solid geometry, from above, in the base frame."""
+    return convex_hull([(x, y) for x, y, _ in _solid_points(model)])
+
+
+def extent_of(model: Model) -> tuple[Vector3, Vector3]:
+    """Lowest and highest corner of the box around the solid geometry, base frame."""
+    xs, ys, zs = zip(*_solid_points(model), strict=True)
+    return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+
+
+def _solid_points(model: Model) -> list[Vector3]:
+    """Points whose convex hull contains the solid geometry, in the base frame."""
     base_T_model = base_of(model).inverse()
-    points = [
-        (x, y)
+    return [
+        point
         for link in model.links
         for geometry in link.geometries
         if geometry.collides
-        for x, y, _ in _outline(geometry, base_T_model @ link.model_T_link)
+        for point in _outline(geometry, base_T_model @ link.model_T_link)
     ]
-    return convex_hull(points)
 
 
 def derive_parameters(model: Model) -> dict[str, dict[str, object]]:

@@ -12,6 +12,7 @@ from navette.errors import FileFormatError, ParameterError
 from navette.files.untrusted.yaml_input import load_yaml
 from navette.geometry import Transform3
 from navette.params import Params, param
+from navette.sim.mounting import SensorMount, mounts_of
 from navette.sim.scene import (
     Box,
     Cylinder,
@@ -20,13 +21,13 @@ from navette.sim.scene import (
     Inertial,
     Joint,
     JointKind,
-    LidarSensor,
     Link,
     Model,
     Shape,
     SpeedLimits,
     Sphere,
 )
+from navette.sim.sensor_specs import LidarSensor
 
 _LEVEL = (0.0, 0.0, 0.0, 1.0)
 _QUARTER = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))  # the wheel's axis is y
@@ -79,11 +80,13 @@ class RobotFile:
         sizes: of the robot; None: ``model`` describes it.
         model: its SDF or URDF file.
         parameters: node → parameter → value.
+        sensors: further ones, by name.
     """
 
     sizes: RobotSizes | None
     model: Path | None
     parameters: dict[str, dict[str, Any]]
+    sensors: dict[str, SensorMount]
 
 
 def read_robot_file(path: Path) -> RobotFile:
@@ -98,6 +101,13 @@ def read_robot_file(path: Path) -> RobotFile:
         raise FileFormatError(path, f"not YAML: {error}") from None
     if not isinstance(content, dict):
         raise FileFormatError(path, "expected lines 'length_m: 0.5'")
+    sensors = content.pop("sensors", {})
+    if not isinstance(sensors, dict):
+        raise FileFormatError(path, "sensors: expected NAME: TYPE, or NAME: {TYPE: …}")
+    try:
+        mounts = mounts_of(sensors)
+    except ParameterError as error:
+        raise FileFormatError(path, str(error)) from None
     parameters = content.pop("parameters", {})
     if not isinstance(parameters, dict) or not all(
         isinstance(values, dict) for values in parameters.values()
@@ -109,13 +119,13 @@ def read_robot_file(path: Path) -> RobotFile:
             raise FileFormatError(
                 path, f"beside model: {', '.join(map(str, content))}; sizes are in it"
             )
-        return RobotFile(None, path.parent / str(model), parameters)
+        return RobotFile(None, path.parent / str(model), parameters, mounts)
     content.setdefault("name", path.stem)
     try:
         sizes = RobotSizes.from_dict(content)
     except ParameterError as error:
         raise FileFormatError(path, str(error)) from None
-    return RobotFile(sizes, None, parameters)
+    return RobotFile(sizes, None, parameters, mounts)
 
 
 def model_of(sizes: RobotSizes) -> Model:

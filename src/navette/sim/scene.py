@@ -13,6 +13,8 @@ from pathlib import Path
 
 from navette.errors import InvalidValueError
 from navette.geometry import Transform3, Vector3
+from navette.sim.sensor_specs import Sensor
+from navette.sim.surface import Surface
 from navette.sim.trajectory import Trajectory
 
 Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0…1
@@ -75,6 +77,7 @@ class Geometry:
     collides: bool = True
     visible: bool = True
     friction: float | None = None
+    surface: Surface | None = None  # None: opaque and light, as most
 
     def __post_init__(self) -> None:
         if _largest_measure(self.shape) > _LARGEST_M:
@@ -101,53 +104,6 @@ class Inertial:
     mass: float
     link_T_com: Transform3
     inertia: tuple[float, float, float, float, float, float]  # xx yy zz xy xz yz
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sensor:
-    """A sensor of a link; ``frame`` is the frame id of its messages, "" derives it."""
-
-    name: str
-    link_T_sensor: Transform3 = _IDENTITY
-    rate_hz: float = 10.0
-    frame: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class LidarSensor(Sensor):
-    """A planar laser scanner; the first and last beam lie on the given angles."""
-
-    samples: int = 360
-    angle_min: float = -3.141592653589793
-    angle_max: float = 3.141592653589793
-    range_min: float = 0.1
-    range_max: float = 20.0
-    noise_stddev: float = 0.0
-    sees_visuals: bool = True  # a gpu_lidar sees visuals, a ray sensor collisions
-
-
-@dataclass(frozen=True, kw_only=True)
-class CameraSensor(Sensor):
-    """A pinhole camera that looks along its frame's +x, with z up (SDF)."""
-
-    width: int = 320
-    height: int = 240
-    horizontal_fov: float = 1.047
-    near: float = 0.1
-    far: float = 100.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class ImuSensor(Sensor):
-    acceleration_stddev: float = 0.0
-    angular_velocity_stddev: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactSensor(Sensor):
-    """A bumper on named collisions of its link; all contacts are reported."""
-
-    collisions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,12 +223,26 @@ class Model:
         return replace(self, world_T_model=world_T_model)
 
 
+@dataclass(frozen=True)
+class GeoOrigin:
+    """Origin of a world on the Earth; its x axis points ``heading_deg`` from east.
+
+    The defaults are those of Gazebo's worlds without ``<spherical_coordinates>``.
+    """
+
+    latitude_deg: float = 0.0
+    longitude_deg: float = 0.0
+    altitude_m: float = 0.0
+    heading_deg: float = 0.0
+
+
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """A world: models, gravity (m/s²) and colours.
 
     ``start`` is the initial pose of a robot without its own. ``mjcf`` is a MuJoCo model
-    file whose contents are added to the scene unchanged.
+    file whose contents are added to the scene unchanged. ``origin`` is where the
+    world's frame lies on the Earth.
     """
 
     name: str
@@ -282,6 +252,7 @@ class Scene:
     sun_direction: Vector3 = (-0.5, 0.1, -0.9)
     start: Transform3 = _IDENTITY
     mjcf: Path | None = None
+    origin: GeoOrigin = GeoOrigin()
 
     @property
     def robot(self) -> Model | None:

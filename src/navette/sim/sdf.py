@@ -16,6 +16,7 @@ from navette.sim.scene import (
     AckermannDrive,
     DiffDrive,
     Geometry,
+    GeoOrigin,
     Joint,
     JointKind,
     Link,
@@ -24,8 +25,9 @@ from navette.sim.scene import (
     Scene,
 )
 from navette.sim.sdf_actors import MAX_ACTORS, read_actor
+from navette.sim.sdf_drives import find_drive, note_plugin
 from navette.sim.sdf_poses import PoseGraph, RawPose, read_pose
-from navette.sim.sdf_sensors import find_drive, note_plugin, read_sensors
+from navette.sim.sdf_sensors import read_sensors
 from navette.sim.sdf_shapes import read_geometries, read_inertial
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml
 
@@ -99,6 +101,23 @@ def _read_world(world: XmlNode, path: Path, unsupported: Unsupported) -> Scene:
         models=tuple(models),
         gravity=_vector(world, "gravity", (0.0, 0.0, -9.81)),
         start=graph.pose_of(START_FRAME, start) if start else Transform3.identity(),
+        origin=_read_origin(world),
+    )
+
+
+def _read_origin(world: XmlNode) -> GeoOrigin:
+    """Read where the world's frame lies on the Earth (``<spherical_coordinates>``)."""
+    node = world.find("spherical_coordinates")
+    if node is None:
+        return GeoOrigin()
+    latitude = node.number("latitude_deg", 0.0)
+    if abs(latitude) > 90.0:
+        raise node.error(f"<latitude_deg> is {latitude:g}; expected -90 to 90")
+    return GeoOrigin(
+        latitude,
+        node.number("longitude_deg", 0.0),
+        node.number("elevation", 0.0),
+        node.number("heading_deg", 0.0),
     )
 
 

@@ -1,56 +1,37 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SDF sensors and drive plugins (Gazebo classic, Ignition, gz)."""
+"""SDF sensors (Gazebo classic, Ignition, gz)."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import fields
-from typing import Any, TypedDict
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypedDict
 
 from navette.geometry import Transform3
-from navette.sim.scene import (
-    AckermannDrive,
+from navette.sim.sdf_poses import PoseGraph, read_pose
+from navette.sim.sensor_specs import (
     CameraSensor,
     ContactSensor,
-    DiffDrive,
+    DepthCameraSensor,
+    GnssSensor,
     ImuSensor,
     LidarSensor,
-    MecanumDrive,
+    RingLidarSensor,
     Sensor,
-    SpeedLimits,
+    SonarSensor,
 )
-from navette.sim.sdf_poses import PoseGraph, read_pose
 from navette.sim.xml_tree import Unsupported, XmlNode
 
 _ROUNDED_RAD = 1e-4  # files write 2 pi with some digits
 MAX_BEAMS = 20_000
+MAX_RING_BEAMS = 1_000_000
 MAX_PIXELS = 4096 * 4096
-
-_LIDAR_TYPES = ("ray", "lidar", "gpu_ray", "gpu_lidar")
-
-# Plugins whose function Navette's own nodes have; ignored without a warning.
-_REPLACED = (
-    "posepublisher",
-    "pose-publisher",
-    "jointstatepublisher",
-    "joint-state-publisher",
-    "joint_state_publisher",
-    "odometrypublisher",
-    "odometry-publisher",
-    "physics",
-    "usercommands",
-    "user-commands",
-    "scenebroadcaster",
-    "scene-broadcaster",
-    "imu",
-    "sensors",
-    "contact",
-)
 
 
 class _Common(TypedDict):
     name: str
     link_T_sensor: Transform3
     frame: str
+    topic: str
 
 
 def read_sensors(
@@ -62,30 +43,14 @@ def read_sensors(
             name=node.name(),
             link_T_sensor=graph.resolve_in(link_name, read_pose(node)),
             frame=_frame(node),
+            topic=node.words("topic"),
         )
-        sensor = _read_sensor(node, common, unsupported)
-        if sensor is not None:
-            sensors.append(sensor)
+        kind = node.need_attribute("type")
+        if kind in _READERS:
+            sensors += _READERS[kind](node, common, unsupported)
+        else:
+            unsupported.note(f"sensor of type {kind!r}", node)
     return tuple(sensors)
-
-
-def _read_sensor(
-    node: XmlNode, common: _Common, unsupported: Unsupported
-) -> Sensor | None:
-    kind = node.need_attribute("type")
-    if kind in _LIDAR_TYPES:
-        return _lidar(node, kind, common, unsupported)
-    if kind == "camera":
-        return _camera(node, common, unsupported)
-    if kind == "imu":
-        return _imu(node, common)
-    if kind == "contact":
-        contact = node.find("contact")
-        names = [c.text.strip() for c in contact.all("collision")] if contact else []
-        rate = _rate(node, 10.0)
-        return ContactSensor(**common, rate_hz=rate, collisions=tuple(names))
-    unsupported.note(f"sensor of type {kind!r}", node)
-    return None
 
 
 def _frame(node: XmlNode) -> str:
@@ -104,36 +69,19 @@ def _rate(node: XmlNode, default: float) -> float:
     return rate or default
 
 
-def _lidar(
-    node: XmlNode, kind: str, common: _Common, unsupported: Unsupported
-) -> LidarSensor:
+def _lidar(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
     body = node.find("ray") or node.find("lidar")
     if body is None:
         raise node.error("<ray> or <lidar> is missing")
     horizontal = body.need("scan").need("horizontal")
-    vertical = body.find("scan", "vertical")
-    if vertical is not None and vertical.number("samples", 1.0) > 1:
-        unsupported.note(
-            "lidar with several rows of beams (one row is simulated)", vertical
-        )
-    samples = round(
-        horizontal.positive("samples", 640.0) * horizontal.positive("resolution", 1.0)
-    )
-    if not 1 <= samples <= MAX_BEAMS:
-        raise horizontal.error(f"{samples} samples; expected 1 to {MAX_BEAMS}")
-    angle_min = horizontal.number("min_angle", 0.0)
-    angle_max = horizontal.number("max_angle", 0.0)
-    if angle_max < angle_min or angle_max - angle_min > math.tau + _ROUNDED_RAD:
-        raise horizontal.error(
-            f"angles {angle_min:g} to {angle_max:g} are not a valid scan"
-        )
+    samples, angle_min, angle_max = _fan(horizontal, 640.0, math.tau)
     limits = body.need("range")
     range_min, range_max = limits.number("min", 0.0), limits.positive("max")
     if not 0 <= range_min < range_max:
         raise limits.error(
             f"min {range_min:g} and max {range_max:g} m are not a valid range"
         )
-    return LidarSensor(
+    lidar = LidarSensor(
         **common,
         rate_hz=_rate(node, 10.0),
         samples=samples,
@@ -142,24 +90,85 @@ def _lidar(
         range_min=range_min,
         range_max=range_max,
         noise_stddev=_stddev(body),
-        sees_visuals=kind != "ray",
+        sees_visuals=node.attributes["type"] != "ray",
     )
+    vertical = body.find("scan", "vertical")
+    if vertical is None or round(vertical.number("samples", 1.0)) <= 1:
+        return [lidar]
+    rings, lowest, highest = _fan(vertical, 1.0, math.pi)
+    if rings * samples > MAX_RING_BEAMS or max(-lowest, highest) > math.pi / 2:
+        raise vertical.error(
+            f"{rings} x {samples} beams between elevations {lowest:g} and {highest:g}; "
+            f"expected at most {MAX_RING_BEAMS} within -pi/2 to pi/2"
+        )
+    return [
+        RingLidarSensor(
+            **vars(lidar),
+            rings=rings,
+            elevation_min=lowest,
+            elevation_max=highest,
+            is_organized=node.flag("organized", default=True),
+        )
+    ]
 
 
-def _camera(node: XmlNode, common: _Common, unsupported: Unsupported) -> CameraSensor:
+def _fan(node: XmlNode, default: float, most: float) -> tuple[int, float, float]:
+    """Read number and angles of the beams of ``<horizontal>`` or ``<vertical>``."""
+    samples = round(
+        node.positive("samples", default) * node.positive("resolution", 1.0)
+    )
+    if not 1 <= samples <= MAX_BEAMS:
+        raise node.error(f"{samples} samples; expected 1 to {MAX_BEAMS}")
+    low, high = node.number("min_angle", 0.0), node.number("max_angle", 0.0)
+    if high < low or high - low > most + _ROUNDED_RAD:
+        raise node.error(f"angles {low:g} to {high:g} are not a valid scan")
+    return samples, low, high
+
+
+def _camera(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
+    camera = _pinhole(node, common)
+    if _stddev(node.need("camera")) > 0:
+        unsupported.note("noise of a camera", node)
+    return [camera]
+
+
+def _depth_camera(
+    node: XmlNode, common: _Common, unsupported: Unsupported
+) -> list[Sensor]:
+    pinhole, body = _pinhole(node, common), node.need("camera")
+    per_m = body.number("noise_per_m", 0.0)
+    if per_m < 0:
+        raise body.error(f"<noise_per_m> is {per_m:g}; must be >= 0")
+    clip = body.find("depth_camera", "clip")
+    near = clip.positive("near", pinhole.near) if clip else pinhole.near
+    far = clip.positive("far", pinhole.far) if clip else pinhole.far
+    depth = replace(pinhole, near=near, far=far)
+    return [
+        DepthCameraSensor(**vars(depth), noise_stddev=_stddev(body), noise_per_m=per_m)
+    ]
+
+
+def _rgbd_camera(
+    node: XmlNode, common: _Common, unsupported: Unsupported
+) -> list[Sensor]:
+    """Read a camera that measures colour and depth."""
+    [depth] = _depth_camera(node, common, unsupported)
+    colour = _pinhole(node, common)
+    return [colour, replace(depth, name=f"{depth.name}_depth")]
+
+
+def _pinhole(node: XmlNode, common: _Common) -> CameraSensor:
     body = node.need("camera")
     image, clip = body.find("image"), body.find("clip")
     width = round(image.positive("width", 320.0)) if image else 320
     height = round(image.positive("height", 240.0)) if image else 240
-    if width * height > MAX_PIXELS:
-        raise body.error(f"{width} x {height} pixels; at most {MAX_PIXELS}")
+    if width * height > MAX_PIXELS or min(width, height) < 1:
+        raise body.error(f"{width} x {height} pixels; expected 1 to {MAX_PIXELS}")
     fov = body.positive("horizontal_fov", 1.047)
     if fov >= math.pi:
         raise body.error(
             f"<horizontal_fov> is {fov:g}; a pinhole camera requires less than pi"
         )
-    if _stddev(body) > 0:
-        unsupported.note("noise of a camera", body)
     return CameraSensor(
         **common,
         rate_hz=_rate(node, 30.0),
@@ -171,13 +180,69 @@ def _camera(node: XmlNode, common: _Common, unsupported: Unsupported) -> CameraS
     )
 
 
-def _imu(node: XmlNode, common: _Common) -> ImuSensor:
-    return ImuSensor(
-        **common,
-        rate_hz=_rate(node, 100.0),
-        acceleration_stddev=_stddev(node.find("imu", "linear_acceleration", "x")),
-        angular_velocity_stddev=_stddev(node.find("imu", "angular_velocity", "x")),
+def _sonar(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
+    """Read a sonar; ``<radius>`` is that of its cone at the largest range."""
+    body = node.need("sonar")
+    shortest, longest = body.number("min", 0.0), body.positive("max")
+    if not 0 <= shortest < longest:
+        raise body.error(
+            f"min {shortest:g} and max {longest:g} m are not a valid range"
+        )
+    return [
+        SonarSensor(
+            **common,
+            rate_hz=_rate(node, 10.0),
+            half_angle=math.atan2(body.positive("radius", 0.5), longest),
+            range_min=shortest,
+            range_max=longest,
+            noise_stddev=_stddev(body),
+        )
+    ]
+
+
+def _contact(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
+    """Read a bumper; ``<navette:bearings>`` limits it to a part of its collisions."""
+    contact = node.find("contact")
+    names = [c.text.strip() for c in contact.all("collision")] if contact else []
+    bearings = node.find("bearings")
+    low, high = bearings.numbers(2) if bearings else (-math.pi, math.pi)
+    if not low < high <= low + math.tau + _ROUNDED_RAD:
+        raise node.error(f"bearings {low:g} to {high:g}; expected up to one turn")
+    return [
+        ContactSensor(
+            **common,
+            rate_hz=_rate(node, 50.0),
+            collisions=tuple(names),
+            bearings=(low, high),
+        )
+    ]
+
+
+def _gnss(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
+    sensing = node.find("navsat", "position_sensing") or node.find(
+        "gps", "position_sensing"
     )
+    across = sensing.find("horizontal") if sensing else None
+    up = sensing.find("vertical") if sensing else None
+    return [
+        GnssSensor(
+            **common,
+            rate_hz=_rate(node, 5.0),
+            horizontal_stddev=_stddev(across),
+            vertical_stddev=_stddev(up),
+        )
+    ]
+
+
+def _imu(node: XmlNode, common: _Common, unsupported: Unsupported) -> list[Sensor]:
+    return [
+        ImuSensor(
+            **common,
+            rate_hz=_rate(node, 100.0),
+            acceleration_stddev=_stddev(node.find("imu", "linear_acceleration", "x")),
+            angular_velocity_stddev=_stddev(node.find("imu", "angular_velocity", "x")),
+        )
+    ]
 
 
 def _stddev(node: XmlNode | None) -> float:
@@ -190,176 +255,15 @@ def _stddev(node: XmlNode | None) -> float:
     return stddev
 
 
-_DRIVES = {
-    "ackermann": ("ackermannsteering", "ackermann-steering", "ackermann_drive"),
-    "mecanum": ("mecanumdrive", "mecanum-drive", "mecanum_drive"),
-    "diff": (
-        *("diffdrive", "diff-drive", "diff_drive"),
-        *("skid_steer", "skidsteer"),
-    ),
+_Reader = Callable[[XmlNode, _Common, Unsupported], list[Sensor]]
+
+_READERS: dict[str, _Reader] = {
+    **dict.fromkeys(("ray", "lidar", "gpu_ray", "gpu_lidar"), _lidar),
+    "camera": _camera,
+    **dict.fromkeys(("depth", "depth_camera"), _depth_camera),
+    **dict.fromkeys(("rgbd", "rgbd_camera"), _rgbd_camera),
+    "imu": _imu,
+    "sonar": _sonar,
+    "contact": _contact,
+    **dict.fromkeys(("gps", "navsat"), _gnss),
 }
-
-
-def find_drive(
-    plugins: Iterable[XmlNode], unsupported: Unsupported
-) -> DiffDrive | None:
-    """Read the first drive; note plugins that have no counterpart in Navette."""
-    drive = None
-    for plugin in plugins:
-        if _is_drive(plugin):
-            drive = drive or read_drive(plugin)
-        else:
-            note_plugin(plugin, unsupported)
-    return drive
-
-
-def note_plugin(plugin: XmlNode, unsupported: Unsupported) -> None:
-    if not _is_replaced(plugin):
-        name = plugin.attributes.get("name") or plugin.attributes.get("filename", "")
-        unsupported.note(f"plugin {name!r}", plugin)
-
-
-def _is_drive(plugin: XmlNode) -> bool:
-    text = _plugin_name(plugin)
-    return any(key in text for kind in _DRIVES.values() for key in kind)
-
-
-def _is_replaced(plugin: XmlNode) -> bool:
-    text = _plugin_name(plugin).rpartition("::")[2]
-    return text in _REPLACED or any(key in _plugin_name(plugin) for key in _REPLACED)
-
-
-def _plugin_name(plugin: XmlNode) -> str:
-    a = plugin.attributes
-    return f"{a.get('filename', '')} {a.get('name', '')}".lower()
-
-
-def read_drive(plugin: XmlNode) -> DiffDrive:
-    """Read the plugin of a drive: wheel joints, geometry and limits.
-
-    Gazebo's differential, skid-steer, AckermannSteering and MecanumDrive plugins.
-    """
-    text = _plugin_name(plugin)
-    if any(key in text for key in _DRIVES["mecanum"]):
-        return _read_mecanum(plugin)
-    drive = _read_wheels(plugin)
-    if any(key in text for key in _DRIVES["ackermann"]):
-        return _read_ackermann(plugin, drive)
-    return drive
-
-
-def _read_ackermann(plugin: XmlNode, drive: DiffDrive) -> AckermannDrive:
-    left = _joints(plugin, "left_steering")
-    right = _joints(plugin, "right_steering")
-    base = _first(plugin, ("wheel_base", "wheelbase"))
-    limit = _first(plugin, ("steering_limit",))
-    if len(left) != 1 or len(right) != 1:
-        raise plugin.error(
-            "Ackermann steering needs one <left_steering_joint> and one "
-            "<right_steering_joint>"
-        )
-    if base is None or limit is None or base <= 0 or not 0 < limit < 1.5:
-        raise plugin.error("<wheel_base> must be > 0, <steering_limit> 0 … 1.5 rad")
-    if len(drive.left_joints) != 1 or len(drive.right_joints) != 1:
-        raise plugin.error(
-            "Ackermann steering needs one <left_joint> and one <right_joint>: the "
-            "driven wheels at the rear"
-        )
-    return AckermannDrive(
-        **_fields(drive),
-        left_steering=left[0],
-        right_steering=right[0],
-        wheel_base=base,
-        kingpin_width=_first(plugin, ("kingpin_width",)) or drive.wheel_separation,
-        steering_limit=limit,
-    )
-
-
-def _read_mecanum(plugin: XmlNode) -> MecanumDrive:
-    names = [
-        _joints(plugin, f"{end}_{side}")
-        for side in ("left", "right")
-        for end in ("front", "back")
-    ]
-    if any(len(each) != 1 for each in names):
-        raise plugin.error(
-            "a mecanum drive needs <front_left_joint>, <front_right_joint>, "
-            "<back_left_joint> and <back_right_joint>"
-        )
-    front_left, back_left, front_right, back_right = (each[0] for each in names)
-    track = _first(plugin, ("wheel_separation",))
-    base = _first(plugin, ("wheelbase", "wheel_base"))
-    radius = _first(plugin, ("wheel_radius",))
-    if not (track and base and radius) or min(track, base, radius) <= 0:
-        raise plugin.error(
-            "<wheel_separation>, <wheelbase> and <wheel_radius> must be > 0"
-        )
-    return MecanumDrive(
-        left_joints=(front_left, back_left),
-        right_joints=(front_right, back_right),
-        wheel_separation=track + base,
-        wheel_radius=radius,
-        limits=_limits(plugin),
-    )
-
-
-def _fields(drive: DiffDrive) -> dict[str, Any]:
-    return {each.name: getattr(drive, each.name) for each in fields(drive)}
-
-
-def _read_wheels(plugin: XmlNode) -> DiffDrive:
-    left = _joints(plugin, "left")
-    right = _joints(plugin, "right")
-    if not left or not right:
-        raise plugin.error("a drive needs <left_joint> and <right_joint>")
-    separation = _first(plugin, ("wheel_separation", "wheelSeparation"))
-    radius = _first(plugin, ("wheel_radius",))
-    diameter = _first(plugin, ("wheel_diameter", "wheelDiameter"))
-    if radius is None and diameter is not None:
-        radius = diameter / 2
-    if separation is None or radius is None or min(separation, radius) <= 0:
-        raise plugin.error("wheel separation and radius must be > 0")
-    multiplier = _first(plugin, ("wheel_separation_multiplier",)) or 1.0
-    return DiffDrive(
-        left_joints=left,
-        right_joints=right,
-        wheel_separation=separation * multiplier,
-        wheel_radius=radius,
-        limits=_limits(plugin),
-        max_wheel_torque=_first(plugin, ("max_wheel_torque", "wheelTorque", "torque")),
-    )
-
-
-def _joints(plugin: XmlNode, side: str) -> tuple[str, ...]:
-    tags = (
-        f"{side}_joint",
-        f"{side}Joint",
-        f"{side}FrontJoint",
-        f"{side}RearJoint",
-        f"{side}_front_joint",
-        f"{side}_rear_joint",
-    )
-    return tuple(c.text.strip() for c in plugin.children if c.tag in tags)
-
-
-def _first(plugin: XmlNode, tags: tuple[str, ...]) -> float | None:
-    for tag in tags:
-        if plugin.find(tag) is not None:
-            return plugin.number(tag)
-    return None
-
-
-def _limits(plugin: XmlNode) -> SpeedLimits:
-    """Read positive limits; gz has signed minima, and infinity means no limit."""
-
-    def positive(*tags: str) -> float | None:
-        value = _first(plugin, tags)
-        return abs(value) if value else None
-
-    return SpeedLimits(
-        speed=positive("max_linear_velocity", "max_velocity"),
-        reverse_speed=positive("min_linear_velocity", "min_velocity"),
-        yaw_rate=positive("max_angular_velocity"),
-        acceleration=positive("max_linear_acceleration", "max_acceleration"),
-        yaw_acceleration=positive("max_angular_acceleration"),
-    )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """SDF geometry, materials, friction and inertia of a link."""
 
+import math
 from dataclasses import replace
 
 from navette.geometry import Transform3
@@ -17,6 +18,7 @@ from navette.sim.scene import (
     Sphere,
 )
 from navette.sim.sdf_poses import PoseGraph, read_pose
+from navette.sim.surface import SURFACES, Surface
 from navette.sim.xml_tree import Unsupported, XmlNode
 
 # The most frequent names of Gazebo's material script.
@@ -65,7 +67,28 @@ def _geometry(
         collides=collides,
         visible=not collides,
         friction=_read_friction(node) if collides else None,
+        surface=_read_surface(node),
     )
+
+
+def _read_surface(node: XmlNode) -> Surface | None:
+    """Read ``<navette:optics>`` of a collision or visual: a name, or numbers."""
+    found = node.find("optics")
+    if found is None:
+        return None
+    name = found.text.strip() or "plain"
+    if name not in SURFACES:
+        known = ", ".join(SURFACES)
+        raise found.error(f"{name!r}: expected one of {known}, or attributes")
+    surface = SURFACES[name]
+    given = found.attributes
+    if "reflectivity" in given:
+        [share] = found.parse_numbers(given["reflectivity"], 1)
+        surface = replace(surface, reflectivity=share)
+    if "specular_deg" in given:
+        [angle] = found.parse_numbers(given["specular_deg"], 1)
+        surface = replace(surface, specular_rad=math.radians(angle))
+    return surface
 
 
 def merge_geometries(
@@ -78,7 +101,10 @@ def merge_geometries(
         twin = next((v for v in left if _coincide(collision, v)), None)
         if twin is not None:
             left.remove(twin)
-            collision = replace(collision, colour=twin.colour, visible=True)
+            surface = twin.surface or collision.surface
+            collision = replace(
+                collision, colour=twin.colour, visible=True, surface=surface
+            )
         merged.append(collision)
     return (*merged, *left)
 

@@ -7,8 +7,10 @@ on how often sensors are read: commands, limits and checks act at fixed multiple
 physics step, and sensors do not change the state.
 """
 
+import itertools
 import math
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -18,7 +20,8 @@ from navette.errors import InvalidValueError
 from navette.geometry import Pose2, Transform3
 from navette.sim.actors import Actors
 from navette.sim.build import compile_scene
-from navette.sim.camera import Image
+from navette.sim.camera import Camera, Image
+from navette.sim.camera_gl import GlCamera
 from navette.sim.clearance import Clearance, ClearanceProbe
 from navette.sim.contacts import ContactMonitor
 from navette.sim.drive import (
@@ -28,13 +31,21 @@ from navette.sim.drive import (
     rim_speed,
     steering_angles,
 )
-from navette.sim.imu import ImuReading
-from navette.sim.lidar import Scan
+from navette.sim.imu import Imu, ImuReading
+from navette.sim.instant import Instant
+from navette.sim.lidar import Lidar, Scan
 from navette.sim.outlines import outlines_of
 from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
 from navette.sim.scene import AckermannDrive, Scene
-from navette.sim.sensors import cameras_of, imus_of, lidars_of
+from navette.sim.sensor_specs import (
+    CameraSensor,
+    ImuSensor,
+    LidarSensor,
+    RingLidarSensor,
+    Sensor,
+)
+from navette.sim.sensors import make_devices
 from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
@@ -79,9 +90,8 @@ class Simulator:
         mujoco.mj_kinematics(self.compiled.model, self._data)
         self._probe = ClearanceProbe(self.compiled, self._data)
         self.contacts = ContactMonitor(self.compiled, self._data)
-        self.lidars = tuple(lidars_of(self.compiled, self.params))
-        self.imus = tuple(imus_of(self.compiled, self.params))
-        self.cameras = tuple(cameras_of(self.compiled, self.params))
+        #: What measures, by the kind of sensor; in the order of the model.
+        self.devices = make_devices(self.compiled, self.params)
         self._wheel_odometry = WheelOdometry(
             self.compiled.robot.drive, _wheel_errors(self.params)
         )
@@ -136,11 +146,22 @@ class Simulator:
         )
 
     def _seed_noise(self) -> None:
-        """Create one random stream per sensor, so that readings are independent."""
-        seeds = np.random.SeedSequence(self.params.seed).spawn(2 + len(self.lidars))
-        self._imu_rng, self._wheel_rng, *self._lidar_rng = map(
-            np.random.default_rng, seeds
-        )
+        """Create one random stream per sensor, so that readings are independent.
+
+        A further sensor leaves the streams of the others as they are: those of its kind
+        come after them.
+        """
+        own = [kind for kind in self.devices if kind is not ImuSensor]
+        count = 2 + sum(len(self.devices[kind]) for kind in own)
+        seeds = np.random.SeedSequence(self.params.seed).spawn(count)
+        streams = iter(map(np.random.default_rng, seeds))
+        self._imu_rng, self._wheel_rng = next(streams), next(streams)
+        self._rngs = {
+            kind: list(itertools.islice(streams, len(self.devices[kind])))
+            for kind in own
+        }
+        # The IMUs share one, as ever.
+        self._rngs[ImuSensor] = [self._imu_rng] * len(self.imus)
 
     def _floor(self) -> float:
         mujoco.mj_kinematics(self.compiled.model, self._data)
@@ -150,8 +171,9 @@ class Simulator:
     def change_params(self, params: SimParams) -> None:
         """Apply new limits, timeout and lidar noise; other parameters are fixed."""
         self.params = self._ramp.params = params
-        for lidar in self.lidars:
-            lidar.set_noise(params)
+        for kind in (LidarSensor, RingLidarSensor):
+            for lidar in self.devices[kind]:
+                lidar.set_noise(params)
 
     @property
     def now_ns(self) -> int:
@@ -285,22 +307,43 @@ class Simulator:
         self._refresh()
         return self._probe.measure(self._data)
 
-    def scan(self, index: int = 0) -> Scan:
+    @property
+    def lidars(self) -> tuple[Lidar, ...]:
+        """The planar laser scanners."""
+        return self.devices[LidarSensor]
+
+    @property
+    def imus(self) -> tuple[Imu, ...]:
+        """The inertial measurement units."""
+        return self.devices[ImuSensor]
+
+    @property
+    def cameras(self) -> tuple[Camera | GlCamera, ...]:
+        """The colour cameras."""
+        return self.devices[CameraSensor]
+
+    def read(self, kind: type[Sensor], index: int = 0) -> Any:
+        """Return the reading of a sensor, as its device defines it."""
         self._refresh()
-        return self.lidars[index].scan(
-            self.compiled.model, self._data, self.now_ns, self._lidar_rng[index]
+        instant = Instant(
+            self.compiled.model, self._data, self.state, self.now_ns, self.contacts
         )
+        return self.devices[kind][index].read(instant, self._rngs[kind][index])
+
+    def scan(self, index: int = 0) -> Scan:
+        """Return a scan of planar lidar ``index``."""
+        scan: Scan = self.read(LidarSensor, index)
+        return scan
 
     def imu(self, index: int = 0) -> ImuReading:
-        self._refresh()
-        return self.imus[index].read(
-            self.state, self.compiled.model, self._data, self.now_ns, self._imu_rng
-        )
+        """Return a reading of IMU ``index``."""
+        reading: ImuReading = self.read(ImuSensor, index)
+        return reading
 
     def image(self, index: int = 0) -> Image:
         """Current image (height, width, 3) of camera ``index``."""
-        self._refresh()
-        return self.cameras[index].render(self.compiled.model, self._data)
+        image: Image = self.read(CameraSensor, index)
+        return image
 
     def outlines(self, *, actors: bool = False) -> list[NDArray[np.float64]]:
         """Outlines (N, 2) from above of the actors, or else of the other obstacles."""

@@ -19,8 +19,9 @@ from navette.sim.scene import (
     Model,
     Scene,
 )
+from navette.sim.sdf_drives import find_drive
 from navette.sim.sdf_poses import PoseGraph
-from navette.sim.sdf_sensors import find_drive, read_sensors
+from navette.sim.sdf_sensors import read_sensors
 from navette.sim.sdf_shapes import merge_geometries
 from navette.sim.urdf_shapes import Materials, read_urdf_geometry
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml

@@ -11,7 +11,8 @@ from navette.errors import FileFormatError
 from navette.geometry import Pose2
 from navette.sim import Simulator, load_robot, load_world
 from navette.sim.occupancy_map import merge_runs
-from navette.sim.scene import Box, LidarSensor
+from navette.sim.scene import Box
+from navette.sim.sensor_specs import LidarSensor
 
 ROBOT = """<robot name='r'>
 <material name='red'><color rgba='1 0 0 1'/></material>

@@ -14,7 +14,6 @@ from navette.sim.mount import Mount
 from navette.sim.ray_kernels import cast_fan, cast_image
 from navette.sim.scene import (
     Box,
-    CameraSensor,
     Capsule,
     Cylinder,
     Ellipsoid,
@@ -24,7 +23,8 @@ from navette.sim.scene import (
     Shape,
     Sphere,
 )
-from navette.sim.shape_table import ShapeTable
+from navette.sim.sensor_specs import CameraSensor
+from navette.sim.shape_table import ShapeTable, ring_directions
 
 
 def _random_shape(rng: np.random.Generator) -> Shape:
@@ -82,6 +82,29 @@ def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, np.inf)
     np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    ("first", "last"),
+    [(-np.pi, np.pi), (-2.3, 2.3), (0.5, 2.0), (1.0, 1.0 + 2 * np.pi)],
+)
+def test_rings_equal_mujocos(seed: int, first: float, last: float) -> None:
+    simulator = Simulator(_random_scene(seed))
+    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    pose = _tilted(np.random.default_rng(seed)).world(data)
+    azimuths = np.linspace(first, last, 91)
+    elevations = np.linspace(-1.5, 1.5, 15)
+    ours, rows = shapes.cast_rings(model, data, pose, azimuths, elevations, 1e6)
+    beams = ring_directions(azimuths, elevations).reshape(-1, 3)
+    theirs, of = shapes.cast_with_mujoco(
+        model, data, pose[0], beams @ pose[1].T, np.inf
+    )
+    np.testing.assert_allclose(ours.ravel(), theirs, rtol=1e-6)
+    assert np.mean(rows.ravel() == of) > 0.999
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -7,17 +7,15 @@ from pathlib import Path
 import pytest
 
 from navette.errors import FileFormatError, InvalidValueError
-from navette.sim.scene import (
-    Box,
+from navette.sim.scene import Box, Cylinder, JointKind, Scene
+from navette.sim.sdf import read_sdf
+from navette.sim.sensor_specs import (
     CameraSensor,
     ContactSensor,
-    Cylinder,
+    GnssSensor,
     ImuSensor,
-    JointKind,
     LidarSensor,
-    Scene,
 )
-from navette.sim.sdf import read_sdf
 
 
 def _read(tmp_path: Path, body: str, version: str = "1.8") -> Scene:
@@ -166,7 +164,7 @@ def test_sensors(tmp_path: Path) -> None:
             <sensor name='gps' type='gps'/></link>"""
         ),
     )
-    lidar, camera, imu, contact = scene.models[0].links[0].sensors
+    lidar, camera, imu, contact, gnss = scene.models[0].links[0].sensors
     assert isinstance(lidar, LidarSensor)
     assert (lidar.samples, lidar.rate_hz) == (90, 25)
     assert (lidar.range_min, lidar.range_max, lidar.noise_stddev) == (0.2, 9, 0.01)
@@ -176,6 +174,7 @@ def test_sensors(tmp_path: Path) -> None:
     assert imu.rate_hz == 200
     assert isinstance(contact, ContactSensor)
     assert contact.collisions == ("c",)
+    assert isinstance(gnss, GnssSensor)
 
 
 @pytest.mark.parametrize(

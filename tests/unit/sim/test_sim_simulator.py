@@ -17,7 +17,8 @@ from navette.sim import (
     load_robot,
     load_world,
 )
-from navette.sim.scene import LidarSensor, Model, Sensor
+from navette.sim.scene import Model
+from navette.sim.sensor_specs import LidarSensor, Sensor
 
 COURSE = load_robot("course").model
 FREE = SimParams(

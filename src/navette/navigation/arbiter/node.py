@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from navette.errors import ParameterError
 from navette.msgs import topics
@@ -67,6 +67,10 @@ class ArbiterNode(StageNode):
     """Pass on the velocity commands of one source; stop the robot on request."""
 
     PARAMS = ArbiterParams
+    PARAM_GROUPS: ClassVar = {
+        "topics.NAME.": CommandSourceParams,
+        "locks.NAME.": CommandLockParams,
+    }
     FIXED_AT_START = frozenset({"use_stamped"})
     INPUTS = (
         _commands(

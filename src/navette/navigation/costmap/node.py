@@ -13,9 +13,18 @@ from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.costmap.layers import (
+    ObstacleLayerParams,
+    RangeLayerParams,
+    SourceParams,
+)
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.costmap.scan_selection import ScanSelection
+from navette.navigation.costmap.servers.obstacle_sources import (
+    ObstacleSources,
+    declare_layer,
+)
 from navette.navigation.grids import (
     FREE,
     PlanarScan,
@@ -33,6 +42,11 @@ class CostmapNode(StageNode):
     """Convert each scan to a costmap around the sensor."""
 
     PARAMS = CostmapParams
+    PARAM_GROUPS: ClassVar = {
+        "obstacle_layer.": ObstacleLayerParams,
+        "obstacle_layer.SOURCE.": SourceParams,
+        "range_layer.": RangeLayerParams,
+    }
     INPUTS: ClassVar = (
         Input.of(
             topics.LIDAR,
@@ -64,10 +78,13 @@ class CostmapNode(StageNode):
 
     def __init__(self, node_name: str = "costmap", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
+        self._sources: ObstacleSources | None = None
+        if self._layer_settings.sources:
+            self._sources = ObstacleSources(self, self._layer_settings, self.params)
         self._costmap = make_costmap(self.params)
         self._costmap.warm_up()
         self._selection = ScanSelection(self.params.rate_hz)
-        self._fault = ""  # newest of the user's method
+        self._fault = ""  # newest of the user's method, or of a source
         self._newest: OccupancyGrid | None = None
         source = CostmapSource(
             grid=lambda: self._newest,
@@ -77,6 +94,26 @@ class CostmapNode(StageNode):
             footprint=lambda: None,
         )
         self._services = CostmapServices(self, "local_costmap", source)
+
+    def declare_params(self) -> Any:
+        """Declare the parameters of the obstacle layer, too."""
+        self._layer_settings = declare_layer(self)
+        return super().declare_params()
+
+    def inputs(self) -> tuple[Input, ...]:
+        if not self._layer_settings.sources:
+            return self.INPUTS
+        settings = self._layer_settings
+        return (*self.INPUTS, *ObstacleSources.inputs(settings, self._obstacle_sources))
+
+    def _obstacle_sources(self) -> ObstacleSources:
+        assert self._sources is not None, "created before the node spins"
+        return self._sources
+
+    def on_time_jump(self) -> None:
+        """Forget what other sensors observed: a new run."""
+        if self._sources is not None:
+            self._sources.reset()
 
     def on_scan(self, msg: LaserScan) -> None:
         """Publish the costmap of a selected scan."""
@@ -90,13 +127,25 @@ class CostmapNode(StageNode):
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if not self._selection.takes(stamp_ns):
             return
+        frame_id = msg.header.frame_id
+        obstacles = None
+        if self._sources is not None:
+            stale = self._sources.stale()
+            if stale:
+                self._report_fault(stale)
+                return
+            obstacles = self._sources.obstacles_in(frame_id, stamp_ns)
+            if obstacles is None:
+                return
         try:
-            cells = self._costmap.build(scan)
+            cells = self._costmap.build(scan, obstacles)
         except MethodFaultError as error:
             self._report_fault(str(error))
             return
-        frame_id = msg.header.frame_id
+        self._fault = ""
         hits = self._costmap.hits(scan)
+        if hits is not None and obstacles is not None:
+            hits = np.concatenate([hits, obstacles])
         if hits is not None:
             points = points_to_message(hits, frame_id, stamp_ns)
             self.publish(topics.COSTMAP_POINTS.name, points)
@@ -107,7 +156,7 @@ class CostmapNode(StageNode):
             self.publish(topics.LOCAL_COSTMAP.name, message)
 
     def _report_fault(self, fault: str) -> None:
-        """Log a fault of the user's method once; without a costmap the robot stops."""
+        """Log a fault of method or source once; without a costmap the robot stops."""
         if fault != self._fault:
             self._fault = fault
             self.get_logger().error(f"{fault}\nNo costmap: the robot stops.")
@@ -130,5 +179,7 @@ class CostmapNode(StageNode):
     def on_params_changed(self, old: CostmapParams) -> None:
         """Use the new values from the next scan on."""
         self._costmap = make_costmap(self.params)
+        if self._sources is not None:
+            self._sources.configure(self.params)
         if self.params.rate_hz != old.rate_hz:
             self._selection = ScanSelection(self.params.rate_hz)

@@ -7,7 +7,11 @@ from numpy.typing import NDArray
 
 from navette.navigation.costmap.methods import COSTMAPS
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import ScanCostmap, sensor_grid
+from navette.navigation.costmap.scan_costmap import (
+    ScanCostmap,
+    mark_lethal,
+    sensor_grid,
+)
 from navette.navigation.grids import (
     GridSpec,
     PlanarScan,
@@ -63,15 +67,23 @@ class OwnCostmap:
         self._method = method
         self._name = f"costmap {name}: costmap(scan, grid)"
 
-    def build(self, scan: PlanarScan) -> NDArray[np.int8]:
+    def build(
+        self, scan: PlanarScan, obstacles: NDArray[np.float64] | None = None
+    ) -> NDArray[np.int8]:
         """Return the costmap (H, W) of one scan: -1 unknown, 0 free … 100 hit.
+
+        ``obstacles`` (N, 2), m, of other sensors are lethal, whatever the method
+        returned.
 
         Raises:
             MethodFaultError: the method raised, or returned something else.
         """
         arrays = ScanArrays.of(scan)
         returned = own_call(self._name, self._method.costmap, arrays, self.spec)
-        return checked_cells(self._name, returned, self.spec.shape)
+        cells = checked_cells(self._name, returned, self.spec.shape)
+        if obstacles is not None:
+            mark_lethal(cells, self.spec, obstacles)
+        return cells
 
     def hits(self, scan: PlanarScan) -> None:
         """Return None: the obstacles are the cells that the method returns."""

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 from navette.errors import ParameterError
 from navette.navigation.costmap.methods import COSTMAPS
-from navette.params import Params, param
+from navette.navigation.shared_params import FrameParams, check_footprint
+from navette.params import param
 
 
 @dataclass(frozen=True, kw_only=True)
-class CostmapParams(Params):
+class CostmapParams(FrameParams):
     """Geometry and inflation of the costmap."""
 
     method: str = param(
@@ -55,7 +56,16 @@ class CostmapParams(Params):
         at_most=5.0,
     )
 
+    footprint_m: tuple[float, ...] = param(
+        (),
+        "outline of the body in the base frame: x1, y1, x2, y2, …; what the obstacle "
+        "layer marks inside is cleared; empty: nothing",
+    )
+
     def check(self) -> None:
+        super().check()
+        if self.footprint_m:
+            check_footprint(self.footprint_m)
         cells = self.size_m / self.resolution_m
         if not 1 <= cells <= 4000:
             raise ParameterError(

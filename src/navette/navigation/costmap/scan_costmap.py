@@ -10,6 +10,7 @@ from navette.navigation.costmap.grazing import grazing_margins
 from navette.navigation.costmap.methods import COSTMAPS
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.grids import (
+    LETHAL,
     UNKNOWN,
     GridSpec,
     PlanarScan,
@@ -28,6 +29,17 @@ def sensor_grid(params: CostmapParams) -> GridSpec:
     cells = 2 * math.ceil(params.size_m / params.resolution_m / 2 - 0.5 - 1e-9) + 1
     corner = -cells * params.resolution_m / 2
     return GridSpec(params.resolution_m, cells, cells, Pose2(corner, corner, 0.0))
+
+
+def mark_lethal(
+    cells: NDArray[np.int8], spec: GridSpec, points: NDArray[np.float64]
+) -> None:
+    """Mark the cells of points (N, 2), m, in the frame of a grid about the sensor."""
+    corner = np.array([spec.origin.x, spec.origin.y])
+    index = np.floor((points - corner) / spec.resolution).astype(np.int64)
+    inside = ((index >= 0) & (index < (spec.width, spec.height))).all(axis=1)
+    columns, rows = index[inside].T
+    cells[rows, columns] = LETHAL
 
 
 @COSTMAPS.register("scan")
@@ -49,8 +61,13 @@ class ScanCostmap:
         self._beams: tuple[float, float, int] | None = None
         self._directions = np.empty((0, 2))
 
-    def build(self, scan: PlanarScan) -> NDArray[np.int8]:
+    def build(
+        self, scan: PlanarScan, obstacles: NDArray[np.float64] | None = None
+    ) -> NDArray[np.int8]:
         """Return the costmap (H, W) of one scan: -1 unknown, 0 free … 100 hit.
+
+        ``obstacles`` (N, 2), m, are those of other sensors: lethal, whatever the scan
+        measured there.
 
         Only cells that the scan measured get an inflated cost. An unknown cell beside
         an obstacle stays unknown, so that the map keeps its value there (the far side
@@ -72,6 +89,8 @@ class ScanCostmap:
                 margins=self._margins(scan, directions),
                 fills=True,
             )
+        if obstacles is not None:
+            mark_lethal(cost, self.spec, obstacles)
         return inflate(cost, self._table, raise_unknown=False)
 
     def hits(self, scan: PlanarScan) -> NDArray[np.float64]:

@@ -14,8 +14,10 @@ from navette.geometry import Pose2
 class RunOptions:
     """Options of one run of the simulated robot.
 
-    ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
-    time; infinity means as fast as possible. ``record`` is a new file; ``overwrite``
+    ``world`` and ``robot`` are built-in names or files. ``sensors`` are mounted on the
+    robot: ``TYPE`` or ``TYPE@PLACE`` (:mod:`navette.sim.sensor_catalogue`).
+    ``speed`` is a factor of real time; infinity means as fast as possible.
+    ``record`` is a new file; ``overwrite``
     replaces an existing recording. ``methods`` chooses the stages' methods: the keys of
     :data:`navette.navigation.stack.methods.METHOD_PARAMETERS` → name or place;
     ``replacements`` are nodes of the stack → the user's class of nodes;
@@ -26,6 +28,7 @@ class RunOptions:
 
     world: str = "arena"
     robot: str | None = None
+    sensors: tuple[str, ...] = ()
     start: Pose2 | None = None
     goals: tuple[tuple[float, float], ...] = ()
     headless: bool = False

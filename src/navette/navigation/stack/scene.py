@@ -1,6 +1,6 @@
 """World, robot, and the robot's parameters of a run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from navette.navigation.stack.options import RunOptions
@@ -16,6 +16,7 @@ from navette.sim import (
     load_world,
     robot_names,
 )
+from navette.sim.mounting import mount_of, with_sensors
 
 DEFAULT_ROBOT = "jackal"
 
@@ -68,6 +69,9 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
     if scene is None:
         scene = load_world(options.world)
     robot = _choose_robot(options, scene)
+    if options.sensors:
+        model = with_sensors(robot.model, map(mount_of, options.sensors))
+        robot = replace(robot, model=model)
     if scene.robot is not robot.model:
         scene = scene.with_robot(robot.model)
     derived = derive_parameters(robot.model)

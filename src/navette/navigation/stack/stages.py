@@ -351,6 +351,13 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
         help="a built-in robot or a model file, whose parameters are used "
         "(default: the world's own robot)",
     )
+    parser.add_argument(
+        "--sensor",
+        action="append",
+        default=[],
+        metavar="TYPE[@PLACE]",
+        help="a sensor on the robot, as for navette sim",
+    )
 
 
 def _add_lockstep(parser: argparse.ArgumentParser) -> None:
@@ -394,7 +401,13 @@ def _resolve(given: Any) -> "ResolvedScene":
     from navette.navigation.stack.options import RunOptions
     from navette.navigation.stack.scene import resolve_scene
 
-    return resolve_scene(RunOptions(world=given.world, robot=given.robot or None))
+    return resolve_scene(
+        RunOptions(
+            world=given.world,
+            robot=given.robot or None,
+            sensors=tuple(given.sensor),
+        )
+    )
 
 
 def _profile(resolved: "ResolvedScene", name: str) -> ParameterOverrides:

@@ -110,6 +110,8 @@ class StageNode(Node):
     PARAMS: ClassVar[type[Params]] = Params
     INPUTS: ClassVar[tuple[Input, ...]] = ()
     OUTPUTS: ClassVar[tuple[Output, ...]] = ()
+    #: Prefix, such as ``topics.NAME.``, of parameters beside PARAMS → their record.
+    PARAM_GROUPS: ClassVar[Mapping[str, type[Params]]] = {}
     #: Parameters that cannot be set after the start.
     FIXED_AT_START: ClassVar[Collection[str]] = ()
 

@@ -1,0 +1,1 @@
+"""Interfaces of irobot_create_msgs."""

@@ -1,0 +1,1 @@
+"""The parts of the costmap node with a file of their own."""
