@@ -31,12 +31,10 @@ class Pose2(NamedTuple):
     yaw: float
 
     def __matmul__(self, other: "Pose2") -> "Pose2":
-        c, s = math.cos(self.yaw), math.sin(self.yaw)
-        return Pose2(
-            self.x + c * other.x - s * other.y,
-            self.y + s * other.x + c * other.y,
-            wrap_angle(self.yaw + other.yaw),
-        )
+        x, y, yaw = self
+        dx, dy, turn = other
+        c, s = math.cos(yaw), math.sin(yaw)
+        return Pose2(x + c * dx - s * dy, y + s * dx + c * dy, wrap_angle(yaw + turn))
 
     def inverse(self) -> "Pose2":
         c, s = math.cos(self.yaw), math.sin(self.yaw)

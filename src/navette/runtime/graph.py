@@ -180,7 +180,7 @@ class Graph(TransportObserver):
             topic: full name.
             node: full name.
         """
-        every = (e for t in self.transports for e in t.endpoints())
+        every = (e for t in self.transports for e in t.endpoints(topic))
         return _selected(every, topic, kind, node)
 
     def service_endpoints(

@@ -12,7 +12,7 @@ from navette.sim.instant import Instant
 from navette.sim.masks import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
-from navette.sim.ray_kernels import cast_fan
+from navette.sim.ray_kernels import cast_fan, readings
 from navette.sim.sensor_specs import LidarSensor
 from navette.sim.shape_table import ShapeTable
 
@@ -55,7 +55,7 @@ class Lidar:
         self.angle_increment = (
             float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
         )
-        self._distance = np.empty(n)
+        self._distance, self._no_noise = np.empty(n), np.zeros(n)
 
     def set_noise(self, params: SimParams) -> None:
         """Set noise and share of lost beams; below 0 means the sensor's own noise."""
@@ -70,16 +70,20 @@ class Lidar:
             np.zeros(0, dtype=np.int64), empty, empty, np.zeros((0, 3, 3)),
             np.zeros(3), np.eye(3), self._angles, 1.0, self._distance,
         )  # fmt: skip
+        readings(
+            self._distance, self._no_noise, self.sensor.range_min,
+            self.sensor.range_max, np.empty(len(self._angles), np.float32),
+        )  # fmt: skip
 
     def read(self, instant: Instant, rng: np.random.Generator) -> Scan:
         """Cast all beams."""
         s, stamp_ns = self.sensor, instant.stamp_ns
         distance = self._cast(instant.model, instant.data)
-        ranges = np.where(distance <= s.range_max, distance, np.inf)
+        noise = self._no_noise
         if self._noise_m > 0:
-            ranges += rng.normal(0.0, self._noise_m, s.samples)
-        ranges = ranges.astype(np.float32)
-        ranges[ranges < s.range_min] = -np.inf
+            noise = rng.normal(0.0, self._noise_m, s.samples)
+        ranges = np.empty(s.samples, np.float32)
+        readings(distance, noise, s.range_min, s.range_max, ranges)
         if self._dropout > 0:
             ranges[rng.random(s.samples) < self._dropout] = np.nan
         return Scan(

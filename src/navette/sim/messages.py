@@ -41,7 +41,7 @@ from navette.sim.sensor_specs import CameraSensor, ImuSensor
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
-_PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, yaw of six
+_PLANAR = np.array([0, 1, 5, 6, 7, 11, 30, 31, 35])  # x, y, yaw of 6 × 6
 
 
 def odometry_message(
@@ -96,9 +96,9 @@ def joint_message(joints: JointReadings, stamp_ns: int) -> JointState:
 
 def _spatial(planar: Matrix) -> Matrix:
     """(3, 3) of x, y, yaw → (36,) of x, y, z, roll, pitch, yaw."""
-    spatial = np.zeros((6, 6))
-    spatial[_PLANAR] = planar
-    return spatial.ravel()
+    spatial = np.zeros(36)
+    spatial[_PLANAR] = planar.reshape(9)
+    return spatial
 
 
 def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> LaserScan:

@@ -181,6 +181,19 @@ def cast_fan(  # type: ignore[no-untyped-def]
             _cast_beams(kind[g], size[g], m, c, angles, begin, last, distance)
 
 
+@kernel
+def readings(distance, noise, range_min, range_max, ranges):  # type: ignore[no-untyped-def]
+    """Write the measured ranges (N,) float32 of true distances (N,), m.
+
+    inf: nothing within ``range_max``; −inf: closer than ``range_min``.
+    """
+    least = np.float32(range_min)
+    for i in range(ranges.size):
+        there = distance[i] if distance[i] <= range_max else np.inf
+        measured = np.float32(there + noise[i])
+        ranges[i] = np.float32(-np.inf) if measured < least else measured
+
+
 @kernel(inline="never")
 def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
     """Centre and half width (rad) of the angles a shape can cover; half < 0: none."""

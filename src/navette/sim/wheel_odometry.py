@@ -12,6 +12,7 @@ from navette.sim.scene import DiffDrive
 
 Matrix = np.ndarray[Any, np.dtype[np.float64]]
 
+_SAME = Pose2(0.0, 0.0, 0.0)
 #: Lower bound of stated standard deviations (m, rad and per second): a variance of 0
 #: means "unknown" to some readers and "exact" to others.
 LEAST_STDDEV = 1e-3
@@ -44,6 +45,8 @@ class PlanarCovariances:
 
     def of_child(self, frame_T_base: Pose2, base_T_child: Pose2) -> "PlanarCovariances":
         """Transform from the base to a frame fixed to it."""
+        if base_T_child == _SAME:
+            return self
         x, y, turn = base_T_child
         child = frame_T_base @ base_T_child
         pose_J_base = _lever(child.x - frame_T_base.x, child.y - frame_T_base.y)
@@ -106,12 +109,12 @@ class WheelOdometry:
         self._covariance = np.zeros((3, 3))
         self._left = self._right = 0.0  # metres since the last call of motion
         self._spread = (0.0, 0.0)  # variances of these
-        self._motion = WheelMotion(0.0, 0.0, _floor())
+        self._motion = WheelMotion(0.0, 0.0, _FLOOR)
 
     @property
     def pose_covariance(self) -> Matrix:
         """(3, 3) of x, y, yaw of :attr:`pose`, in its frame."""
-        return self._covariance + _floor()
+        return self._covariance + _FLOOR
 
     def update(
         self,
@@ -151,7 +154,7 @@ class WheelOdometry:
         seconds = (self._stamp_ns - self._published_ns) * 1e-9
         if seconds > 0:
             travel, turn = self._travel_and_turn(self._left, self._right)
-            covariance = _floor()
+            covariance = _FLOOR.copy()
             covariance[_FORWARD_AND_YAW] += (
                 self._step_covariance(self._spread) / seconds**2
             )
@@ -202,12 +205,9 @@ class WheelOdometry:
 
 
 _FORWARD_AND_YAW = np.ix_([0, 2], [0, 2])
+_FLOOR = np.eye(3) * LEAST_STDDEV**2
 
 
 def _lever(x: float, y: float) -> Matrix:
     """(3, 3) Jacobian of a point at (x, y) with respect to the origin's motion."""
     return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])
-
-
-def _floor() -> Matrix:
-    return np.eye(3) * LEAST_STDDEV**2

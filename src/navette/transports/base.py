@@ -206,8 +206,8 @@ class Transport(ABC):
         return []
 
     @abstractmethod
-    def endpoints(self) -> list[Endpoint]:
-        """Return all visible topic endpoints, in order of appearance."""
+    def endpoints(self, topic: str | None = None) -> list[Endpoint]:
+        """Return the visible endpoints of a topic, or all, in order of appearance."""
 
     @abstractmethod
     def service_endpoints(self) -> list[Endpoint]:

@@ -229,13 +229,14 @@ class InProcessTransport(Transport):
             _is_compatible(publisher, subscription) for publisher in topic.publishers
         )
 
-    def endpoints(self) -> list[Endpoint]:
+    def endpoints(self, topic: str | None = None) -> list[Endpoint]:
         with self._lock:
-            return [
-                port.endpoint
-                for topic in self._topics.values()
-                for port in topic.ports()
-            ]
+            if topic is None:
+                chosen = list(self._topics.values())
+            else:
+                types = self._types.get(topic, ())
+                chosen = [self._topics[topic, each] for each in types]
+            return [port.endpoint for each in chosen for port in each.ports()]
 
     def service_endpoints(self) -> list[Endpoint]:
         return [port.endpoint for port in self._services.ports()]

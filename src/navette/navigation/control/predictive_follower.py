@@ -37,6 +37,7 @@ from navette.navigation.control.records import (
 from navette.navigation.control.rollouts import (
     METRES_PER_RADIAN,
     PathWindow,
+    RolloutBody,
 )
 from navette.navigation.control.rotate import TurnInPlace
 from navette.navigation.control.states import ControlState, LimitedBy
@@ -46,6 +47,7 @@ from navette.navigation.grids import (
 )
 
 _CELL_M = 0.05  # of the distance field
+_FIELD_MARGIN_M = 0.15  # distances beyond clearance, body and this are not used
 _DELAY_S = 0.05  # from the command to the motion
 _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
@@ -82,6 +84,7 @@ class PredictiveFollower(BaseFollower):
         self._parts = TurnParts.of(params)
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
+        self._body_reach_m = RolloutBody.of(self._body).reach_m
         self._calm = _Mode.of(params, self._body, swerves=False)
         self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
@@ -134,8 +137,13 @@ class PredictiveFollower(BaseFollower):
         unseen: NDArray[np.float64] = NONE_UNSEEN,
     ) -> None:
         super().set_obstacles(points, half_cell, unseen)
+        clearance_m = self._params.mppi_clearance_m
         self._field = local_field(
-            points, _CELL_M, self._params.mppi_clearance_m + 1.0, half_cell
+            points,
+            _CELL_M,
+            clearance_m + 1.0,
+            half_cell,
+            search_m=clearance_m + self._body_reach_m + _FIELD_MARGIN_M,
         )
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:

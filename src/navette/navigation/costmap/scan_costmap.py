@@ -1,10 +1,12 @@
 """Costmap around the sensor from one laser scan."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.costmap.grazing import grazing_margins
 from navette.navigation.costmap.methods import COSTMAPS
@@ -96,14 +98,22 @@ class ScanCostmap:
     def hits(self, scan: PlanarScan) -> NDArray[np.float64]:
         """Return where the beams of a scan ended (N, 2), m, within the costmap."""
         half = self.spec.width * self.spec.resolution / 2
-        ranges = scan.ranges
-        hit = (ranges > scan.range_min) & (ranges < scan.range_max)
-        points = self._directions_of(scan)[hit] * ranges[hit, None]
-        return points[(np.abs(points) < half).all(axis=1)]
+        points = np.empty((len(scan.ranges), 2))
+        count = _end_points(
+            scan.ranges,
+            self._directions_of(scan),
+            np.float32(scan.range_min),
+            np.float32(scan.range_max),
+            half,
+            points,
+        )
+        return points[:count]
 
     def warm_up(self) -> None:
         """Load or compile the kernels before the first scan."""
-        self.build(PlanarScan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))
+        scan = PlanarScan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0)
+        self.build(scan)
+        self.hits(scan)
 
     def _margins(
         self, scan: PlanarScan, directions: NDArray[np.float64]
@@ -123,3 +133,18 @@ class ScanCostmap:
         if beams != self._beams:
             self._directions, self._beams = beam_directions(*beams), beams
         return self._directions
+
+
+@kernel
+def _end_points(
+    ranges: Any, directions: Any, least: Any, most: Any, half: float, points: Any
+) -> int:
+    """Write where beams ended within a square; return how many."""
+    count = 0
+    for i in range(ranges.size):
+        if least < ranges[i] < most:
+            x, y = directions[i, 0] * ranges[i], directions[i, 1] * ranges[i]
+            if abs(x) < half and abs(y) < half:
+                points[count, 0], points[count, 1] = x, y
+                count += 1
+    return count

@@ -16,8 +16,8 @@ from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
 from navette.navigation.grids.checks import at_least, kernel_array
 
-# Columns per block: a few registers that stay in the first-level cache.
-BLOCK = 64
+# Columns per block: long enough for vector loops, short enough to skip empty space.
+BLOCK = 256
 # Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
 RADIUS_16_BIT = 179
 # Largest radius whose square fits int32.

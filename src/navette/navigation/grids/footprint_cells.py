@@ -1,12 +1,15 @@
 """Cells that a footprint covers."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids.spec import GridSpec
+from navette.navigation.grids.exact_clearance import make_outline, signed_distance
+from navette.navigation.grids.spec import GridSpec, grid_frame
 
 
 def cells_in_footprint(
@@ -22,12 +25,36 @@ def cells_in_footprint(
     """
     row, column = spec.cell_of(pose.x, pose.y)
     reach = math.ceil(footprint.circumscribed_radius / spec.resolution) + 1
-    rows, columns = np.mgrid[
-        _span(row, reach, spec.height), _span(column, reach, spec.width)
-    ]
-    cells = np.stack([rows, columns], axis=-1).reshape(-1, 2)
-    centers = pose.inverse().apply(spec.centers_of(cells))
-    return cells[footprint.contains(centers, depth_m=depth_m)]
+    rows, columns = _span(row, reach, spec.height), _span(column, reach, spec.width)
+    cells: NDArray[np.int64] = _covered(
+        make_outline(footprint).vertices,
+        np.array(pose),
+        grid_frame(spec),
+        (rows.start, rows.stop, columns.start, columns.stop),
+        float(depth_m),
+    )
+    return cells
+
+
+@kernel
+def _covered(outline: Any, pose: Any, frame: Any, part: Any, depth: float) -> Any:
+    """Return the cells (N, 2) of a part of the grid whose centres lie that deep."""
+    first_row, last_row, first_column, last_column = part
+    cells = np.empty(
+        ((last_row - first_row) * (last_column - first_column), 2), np.int64
+    )
+    count = 0
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    for row in range(first_row, last_row):
+        for column in range(first_column, last_column):
+            gx = (column + 0.5) * frame.resolution
+            gy = (row + 0.5) * frame.resolution
+            dx = frame.x + frame.cos * gx - frame.sin * gy - pose[0]
+            dy = frame.y + frame.sin * gx + frame.cos * gy - pose[1]
+            if signed_distance(outline, c * dx + s * dy, c * dy - s * dx) <= -depth:
+                cells[count, 0], cells[count, 1] = row, column
+                count += 1
+    return cells[:count].copy()
 
 
 def _span(middle: int, reach: int, size: int) -> slice:

@@ -9,6 +9,10 @@ from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
 
 _KEPT = 16
 _FIELD_BYTES = 4
+_FIELDS = [
+    PointField(name=name, offset=_FIELD_BYTES * k, datatype=PointField.FLOAT32, count=1)
+    for k, name in enumerate("xyz")
+]
 
 
 def points_to_message(
@@ -21,15 +25,7 @@ def points_to_message(
         header=header(stamp_ns, frame_id),
         height=1,
         width=len(points),
-        fields=[
-            PointField(
-                name=name,
-                offset=_FIELD_BYTES * k,
-                datatype=PointField.FLOAT32,
-                count=1,
-            )
-            for k, name in enumerate("xyz")
-        ],
+        fields=list(_FIELDS),
         point_step=3 * _FIELD_BYTES,
         row_step=3 * _FIELD_BYTES * len(points),
         data=cloud.reshape(-1).view(np.uint8),

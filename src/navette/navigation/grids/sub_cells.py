@@ -114,7 +114,7 @@ def local_cell_points(
     first = cells.min(axis=0)
     rows, columns = (cells.max(axis=0) - first + 1).tolist()
     masks = np.zeros((rows, columns), np.uint64)
-    _mark(masks, uv, int(first[0]), int(first[1]))
+    _add_marks(masks, uv, int(first[0]), int(first[1]))
     return cell_points(masks, spec, cells, radius_m, (int(first[0]), int(first[1])))
 
 
@@ -159,6 +159,20 @@ def _mark(masks: Any, uv: Any, first_row: int, first_column: int) -> Any:
         cells[k, 0] = ordered[k] // width + first_row
         cells[k, 1] = ordered[k] % width + first_column
     return cells
+
+
+@kernel
+def _add_marks(masks: Any, uv: Any, first_row: int, first_column: int) -> None:
+    """Mark points (N, 2) u, v in cells, as :func:`_mark`, without listing the cells."""
+    height, width = masks.shape
+    low_u, high_u = float(first_column), float(first_column + width)
+    low_v, high_v = float(first_row), float(first_row + height)
+    for k in range(uv.shape[0]):
+        u, v = uv[k, 0], uv[k, 1]
+        if low_u <= u < high_u and low_v <= v < high_v:
+            part = int(v % 1.0 * SUB_CELLS) * SUB_CELLS + int(u % 1.0 * SUB_CELLS)
+            bit = np.uint64(1) << np.uint64(part)
+            masks[int(v) - first_row, int(u) - first_column] |= bit
 
 
 @kernel

@@ -34,8 +34,7 @@ from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.vanished import (
     VanishedCells,
     cells_beside,
-    passed,
-    without_echo,
+    passed_or_without_echo,
 )
 
 
@@ -279,8 +278,7 @@ class MapMemory:
         hit_cells = np.floor(uv[:, ::-1]).astype(np.int64)
         inside = (hit_cells >= 0) & (hit_cells < self.spec.shape)
         beside = cells_beside(hit_cells[inside.all(axis=1)], window)
-        through = passed(points, costmap.hits, costmap.sensor)
-        silent = without_echo(
+        through, silent = passed_or_without_echo(
             points, costmap.hits, costmap.sensor, self.spec.resolution
         )
         silent[silent] = _is_free(costmap, points[silent])

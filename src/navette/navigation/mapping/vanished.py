@@ -5,12 +5,15 @@ without having measured it, so a free cell there proves nothing. A beam that pas
 point where an earlier beam ended proves that the obstacle is gone.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.navigation.grids import CellWindow, padded_sparse
 
 Points = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 _ASIDE_M = 0.007
 """Largest distance between a beam and a point that it passes."""
@@ -75,49 +78,80 @@ def cells_beside(cells: NDArray[np.int64], window: CellWindow) -> NDArray[np.boo
     return mask[2:-2, 2:-2]
 
 
+class Beams(NamedTuple):
+    """Echoes of one scan as seen from the sensor, in the order of their angles.
+
+    Attributes:
+        angles, ranges: (N,) rad and m of the echoes.
+        beside: (2, M) index of the echo after and before each point.
+        off: (2, M) rad from these to the point.
+        away: (M,) m from the sensor to the point.
+    """
+
+    angles: Values
+    ranges: Values
+    beside: NDArray[np.int64]
+    off: Values
+    away: Values
+
+    @classmethod
+    def of(cls, points: Points, hits: Points, sensor: tuple[float, float]) -> "Beams":
+        """Args: points (M, 2) and echoes (N, 2), N > 0, in the map, m; sensor."""
+        beams, there = hits - sensor, points - sensor
+        angles = np.arctan2(beams[:, 1], beams[:, 0])
+        order = np.argsort(angles)
+        angles = angles[order]
+        ranges = np.hypot(beams[order, 0], beams[order, 1])
+        angle = np.arctan2(there[:, 1], there[:, 0])
+        following = np.searchsorted(angles, angle)
+        beside = np.stack([following, following - 1]) % len(angles)
+        off = np.remainder(angle - angles[beside] + np.pi, 2 * np.pi) - np.pi
+        return cls(angles, ranges, beside, off, np.hypot(there[:, 0], there[:, 1]))
+
+
 def without_echo(
     points: Points, hits: Points, sensor: tuple[float, float], spacing_m: float
 ) -> NDArray[np.bool_]:
-    """Return (N,) whether only beams without an echo can have gone through each point.
+    """Return (M,) whether only beams without an echo can have gone through each point.
 
     No beam beside the point has an echo, and beams there are at most ``spacing_m``
     apart, so that something as wide would have ended one.
     """
     if len(hits) < 2 or len(points) == 0:
         return np.zeros(len(points), np.bool_)
-    beams, there = hits - sensor, points - sensor
-    angles = np.sort(np.arctan2(beams[:, 1], beams[:, 0]))
-    steps = np.diff(angles)
-    step = float(np.median(steps[steps > 1e-5])) if (steps > 1e-5).any() else np.inf
-    angle = np.arctan2(there[:, 1], there[:, 0])
-    away = np.hypot(there[:, 0], there[:, 1])
-    following = np.searchsorted(angles, angle)
-    nearest = np.full(len(points), np.inf)
-    for beam in (following % len(angles), (following - 1) % len(angles)):
-        off = np.remainder(angle - angles[beam] + np.pi, 2 * np.pi) - np.pi
-        nearest = np.minimum(nearest, np.abs(off))
-    return np.asarray((nearest > 1.5 * step) & (away * step <= spacing_m))
+    return _without_echo(Beams.of(points, hits, sensor), spacing_m)
 
 
 def passed(
     points: Points, hits: Points, sensor: tuple[float, float]
 ) -> NDArray[np.bool_]:
-    """Return (N,) whether a beam went through each point and ended well beyond it."""
+    """Return (M,) whether a beam went through each point and ended well beyond it."""
     if len(hits) == 0 or len(points) == 0:
         return np.zeros(len(points), np.bool_)
-    beams = hits - sensor
-    order = np.argsort(np.arctan2(beams[:, 1], beams[:, 0]))
-    beams = beams[order]
-    angles = np.arctan2(beams[:, 1], beams[:, 0])
-    ranges = np.hypot(beams[:, 0], beams[:, 1])
-    there = points - sensor
-    angle = np.arctan2(there[:, 1], there[:, 0])
-    away = np.hypot(there[:, 0], there[:, 1])
-    following = np.searchsorted(angles, angle)
-    found = np.zeros(len(points), np.bool_)
-    for beam in (following % len(beams), (following - 1) % len(beams)):
-        off = np.remainder(angle - angles[beam] + np.pi, 2 * np.pi) - np.pi
-        aside = away * np.abs(np.sin(off)) <= _ASIDE_M
-        aside &= np.abs(off) < np.pi / 2
-        found |= aside & (ranges[beam] >= away + _BEYOND_M)
-    return found
+    return _passed(Beams.of(points, hits, sensor))
+
+
+def passed_or_without_echo(
+    points: Points, hits: Points, sensor: tuple[float, float], spacing_m: float
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return :func:`passed` and :func:`without_echo` of the same points."""
+    if len(hits) < 2 or len(points) == 0:
+        none = np.zeros(len(points), np.bool_)
+        return passed(points, hits, sensor), none
+    beams = Beams.of(points, hits, sensor)
+    return _passed(beams), _without_echo(beams, spacing_m)
+
+
+def _without_echo(beams: Beams, spacing_m: float) -> NDArray[np.bool_]:
+    steps = np.diff(beams.angles)
+    steps = steps[steps > 1e-5]
+    step = float(np.median(steps)) if len(steps) else np.inf
+    nearest = np.abs(beams.off).min(axis=0)
+    return np.asarray((nearest > 1.5 * step) & (beams.away * step <= spacing_m))
+
+
+def _passed(beams: Beams) -> NDArray[np.bool_]:
+    aside = beams.away * np.abs(np.sin(beams.off)) <= _ASIDE_M
+    aside &= np.abs(beams.off) < np.pi / 2
+    aside &= beams.ranges[beams.beside] >= beams.away + _BEYOND_M
+    return np.asarray(aside.any(axis=0))

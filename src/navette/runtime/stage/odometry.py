@@ -59,6 +59,7 @@ class PoseTracker:
         self._history: deque[tuple[int, Pose2]] = deque()  # odom_T_base by stamp
         self._odom_frame = ""
         self._map_T_odom = _HERE
+        self._latest = _HERE  # map_T_base of the newest in the history
         #: Number of jumps of map_T_odom: what was placed in the map before, such as a
         #: path or obstacles, has to be placed again.
         self.jumps = 0
@@ -78,7 +79,7 @@ class PoseTracker:
     @property
     def latest(self) -> Pose2 | None:
         """The newest map_T_base, or None."""
-        return self._on_map(self._history[-1][1]) if self._history else None
+        return self._latest if self._history else None
 
     @property
     def first(self) -> Pose2 | None:
@@ -108,7 +109,9 @@ class PoseTracker:
             return False
         position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
         odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
-        odom_T_base = odom_T_child @ child_T_base
+        odom_T_base = (
+            odom_T_child if child_T_base is _HERE else odom_T_child @ child_T_base
+        )
         on_map = odom_T_base if map_T_odom is _HERE else map_T_odom @ odom_T_base
         if not _is_near(on_map):
             self._drop_pose(on_map)
@@ -213,11 +216,11 @@ class PoseTracker:
                 history.pop()
             else:
                 history.clear()  # time jumped backward
-        before = self._on_map(odom_T_base)  # by the transform until now
         was_carried = (
             not history or history[-1][1].distance_to(odom_T_base) > _CARRIED_M
         )
         if map_T_odom is not self._map_T_odom:
+            before = self._on_map(odom_T_base)  # by the transform until now
             self._map_T_odom = map_T_odom
             if history:
                 moved = before.distance_to(on_map)
@@ -227,6 +230,7 @@ class PoseTracker:
         if was_carried:
             self._first = odom_T_base
         history.append((stamp_ns, odom_T_base))
+        self._latest = on_map
         while history[0][0] < stamp_ns - self._history_ns:
             history.popleft()
 
@@ -236,7 +240,11 @@ class PoseTracker:
             transform = self._static(child, self.base_frame)
             if transform is None:
                 return None
-            self._child_T_base = (child, transform.to_pose2())
+            child_T_base = transform.to_pose2()
+            self._child_T_base = (
+                child,
+                _HERE if child_T_base == _HERE else child_T_base,
+            )
         return self._child_T_base[1]
 
     def _odom_in_map(self, frame: str) -> Pose2 | None:

@@ -80,11 +80,19 @@ class RemoteGraph:
         with self._lock:
             return list(self._nodes.values())
 
-    def endpoints(self, kinds: Iterable[EndpointKind]) -> list[Endpoint]:
-        """Return the remote endpoints of these kinds, in order of appearance."""
+    def endpoints(
+        self, kinds: Iterable[EndpointKind], name: str | None = None
+    ) -> list[Endpoint]:
+        """Return the remote endpoints of these kinds, and of a topic or service.
+
+        They are in order of appearance, those of a name kind by kind.
+        """
         chosen = set(kinds)
         with self._lock:
-            return [e for e in self._endpoints.values() if e.kind in chosen]
+            if name is None:
+                return [e for e in self._endpoints.values() if e.kind in chosen]
+            found = (self._by_name.get((kind, name), {}) for kind in kinds)
+            return [endpoint for each in found for endpoint in each.values()]
 
     def counts(self) -> dict[str, int]:
         """Notify observers; return session → number of nodes and endpoints."""

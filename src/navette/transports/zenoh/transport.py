@@ -147,8 +147,8 @@ class ZenohTransport(Transport):
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
         return self._open(endpoint, lambda entity: ZenohClient(self, entity, sink))
 
-    def endpoints(self) -> list[Endpoint]:
-        return self._graph.endpoints(_TOPIC_KINDS)
+    def endpoints(self, topic: str | None = None) -> list[Endpoint]:
+        return self._graph.endpoints(_TOPIC_KINDS, topic)
 
     def service_endpoints(self) -> list[Endpoint]:
         return self._graph.endpoints(_SERVICE_KINDS)
