@@ -11,6 +11,7 @@ import math
 from array import array
 from collections.abc import Callable, Collection, Iterable
 from functools import cache, partial
+from types import ModuleType
 from typing import Any
 
 from simpleeval import DEFAULT_OPERATORS, EvalWithCompoundTypes, InvalidExpression
@@ -27,13 +28,24 @@ _MAX_DIGITS = 1000
 _SEQUENCES = (str, bytes, list, tuple, array)
 
 
+class ModuleNames:
+    """The public names of a module, for an expression that may use all of them."""
+
+    def __init__(self, module: ModuleType) -> None:
+        self._module = module
+        self.names = [name for name in dir(module) if not name.startswith("_")]
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(self._module, name)
+        return ModuleNames(value) if isinstance(value, ModuleType) else value
+
+
 class ExpressionError(InvalidValueError):
     """An expression is malformed, fails, or exceeds a bound."""
 
 
-def evaluate(text: str, hint: str = "") -> Any:
-    """Return the value of an expression without names; see :class:`Expression`."""
-    return Expression(text, hint=hint).value()
+class UnknownExpressionNameError(ExpressionError):
+    """An expression contains a name that it was not given."""
 
 
 class Expression:
@@ -41,27 +53,35 @@ class Expression:
 
     Available beside the names: the functions of ``math`` (also as ``math.…``), Python's
     simple types, ``abs all any len max min round sorted sum``, ``true``, ``false``,
-    the methods of ``str`` that return bounded text, the fields and constants of
-    messages, and comprehensions of at most 10,000 rounds.
+    the public names of given :class:`ModuleNames`, the methods of ``str`` that return
+    bounded text, the fields and constants of messages, and
+    comprehensions of at most 10,000 rounds.
 
     Args:
         text: the expression.
         names: the names that :meth:`value` will receive.
         hint: advice that is appended to the error for syntax that is not allowed.
+        with_math: the functions of ``math`` are available.
 
     Raises:
         ExpressionError: syntax, a name or an operator that is not allowed.
     """
 
     def __init__(
-        self, text: str, *, names: Collection[str] = (), hint: str = ""
+        self,
+        text: str,
+        *,
+        names: Collection[str] = (),
+        hint: str = "",
+        with_math: bool = True,
     ) -> None:
         if len(text) > MAX_LENGTH:
             raise ExpressionError(
                 f"expression of {len(text)} characters; at most {MAX_LENGTH} allowed"
             )
         self.text = text
-        self._evaluator = _make_evaluator()
+        self._functions = _FUNCTIONS if with_math else _WITHOUT_MATH
+        self._evaluator = _make_evaluator(self._functions)
         try:
             self._tree = ast.parse(text.strip(), mode="eval").body
             self._check_syntax(hint)
@@ -117,20 +137,21 @@ class Expression:
         names = [node for node in ast.walk(self._tree) if isinstance(node, ast.Name)]
         loop_variables = {each.id for each in names if isinstance(each.ctx, ast.Store)}
         for each in sorted({node.id for node in names} - loop_variables):
-            if each not in given and each not in _FUNCTIONS:
-                known = ", ".join([*given, "math", *sorted(_PLAIN_FUNCTIONS)])
-                raise self._error(
-                    f"unknown name {each!r} (text needs quotes inside the "
-                    f"expression); known: {known}"
+            if each not in given and each not in self._functions:
+                math_name = ["math"] if "math" in self._functions else []
+                known = ", ".join([*given, *math_name, *sorted(_PLAIN_FUNCTIONS)])
+                raise UnknownExpressionNameError(
+                    f"expression {self.text!r}: unknown name {each!r} (text needs "
+                    f"quotes inside the expression); known: {known}"
                 )
 
     def _error(self, reason: str) -> ExpressionError:
         return ExpressionError(f"expression {self.text!r}: {reason}")
 
 
-def _make_evaluator() -> Any:
+def _make_evaluator(functions: dict[str, Any]) -> Any:
     evaluator = EvalWithCompoundTypes(operators=_OPERATORS, functions={})
-    evaluator.functions = _FUNCTIONS
+    evaluator.functions = functions
     nodes = evaluator.nodes
     # f-strings take a width, for text of any length.
     for kind in (ast.JoinedStr, ast.FormattedValue, ast.DictComp):
@@ -150,6 +171,8 @@ def _attribute(owner: Any, name: str) -> Any:
     allowed: Collection[str] = _MATH if owner is _MATH else _METHODS.get(kind, ())
     if isinstance(owner, Message):
         allowed = _members(kind)
+    elif kind is ModuleNames:
+        allowed = owner.names
     if name not in allowed:
         owner_name = "math" if owner is _MATH else kind.__name__
         raise ExpressionError(
@@ -252,6 +275,7 @@ _MATH: dict[str, Any] = {
 # simpleeval looks names up here after the names that the user gave.
 _FUNCTIONS: dict[str, Any] = {"math": _MATH, "true": True, "false": False}
 _FUNCTIONS |= {**_MATH, **_PLAIN_FUNCTIONS}
+_WITHOUT_MATH = {"true": True, "false": False, **_PLAIN_FUNCTIONS}
 
 _BOUNDED_METHODS: dict[str, Callable[..., str]] = {"join": _join, "replace": _replace}
 _METHODS: dict[type, frozenset[str]] = {

@@ -4,7 +4,7 @@ import pytest
 
 from navette.errors import DecodeError
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.expressions import Expression, ExpressionError, evaluate
+from navette.msgs.expressions import Expression, ExpressionError
 from navette.msgs.geometry_msgs.msg import Point, PoseStamped
 
 
@@ -30,7 +30,7 @@ from navette.msgs.geometry_msgs.msg import Point, PoseStamped
     ],
 )
 def test_expressions_have_pythons_values(text: str, value: object) -> None:
-    assert evaluate(text) == value
+    assert Expression(text).value() == value
 
 
 # Each level doubles the number of backslashes.
@@ -79,7 +79,7 @@ DOUBLING = "".join(
 )
 def test_unsafe_and_unbounded_expressions_are_refused(text: str, reason: str) -> None:
     with pytest.raises(ExpressionError, match=reason):
-        evaluate(text)
+        Expression(text).value()
 
 
 def test_names_have_the_fields_and_constants_of_messages() -> None:
@@ -128,7 +128,7 @@ def test_an_unknown_name_is_reported_at_construction() -> None:
 
 def test_the_hint_is_part_of_the_error() -> None:
     with pytest.raises(ExpressionError, match=r"Lambda.*; use a node"):
-        evaluate("lambda: 1", "use a node")
+        Expression("lambda: 1", hint="use a node")
 
 
 def test_loop_variables_do_not_leak() -> None:

@@ -59,7 +59,7 @@ def is_complete(description: LaunchDescription) -> bool:
 
 def _may_declare(entity: LaunchDescriptionEntity) -> bool:
     if isinstance(entity, IncludeLaunchDescription):
-        return not entity.describe_sub_entities()
+        return not entity.get_sub_entities()
     return isinstance(entity, (ForEach, ForLoop, OpaqueFunction))
 
 
@@ -70,10 +70,7 @@ def describe_arguments(declared: Sequence[Any]) -> str:
         lines += ["  No arguments.", ""]
     for argument in declared:
         lines.append(f"    '{argument.name}':")
-        text = argument.description or "no description given"
-        if argument.choices is not None:
-            text += f". Valid choices are: {argument.choices}"
-        lines.append(f"        {text}")
+        lines.append(f"        {argument.description}")
         if argument.default_value is not None:
             lines.append(f"        (default: {argument.describe_default()})")
         lines.append("")

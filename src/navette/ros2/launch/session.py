@@ -119,7 +119,7 @@ def launch(
             LaunchDescription([IncludeLaunchDescription(source)])
         )
         with _signals(service) as received:
-            code = service.run()
+            code = service.run() or int(bool(service.context.failed_labels))
         return _INTERRUPTED if received else code
 
 

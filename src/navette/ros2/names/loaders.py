@@ -167,9 +167,10 @@ class PackageLoader(_LazyLoader):
         if self.name.partition(".")[0] not in ("launch", "launch_ros", "tf2_ros"):
             return False
         start = name.replace("_", "")
-        return name.islower() and any(
-            each.lower().startswith(start) for each in _public_names(self._real)
-        )
+        words = [each.replace("_", "").lower() for each in _public_names(self._real)]
+        # `shutdown_action` has Shutdown.
+        start = start.removesuffix("action")
+        return name.islower() and any(word.startswith(start) for word in words)
 
 
 class InterfacePackageLoader(Ros2Loader):

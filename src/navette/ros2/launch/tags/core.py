@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.action import Action, reads_arguments
 from navette.ros2.packages.launch.actions import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
@@ -28,6 +28,7 @@ from navette.ros2.packages.launch.frontend import (
     parse_elements,
     parse_substitution,
 )
+from navette.ros2.packages.launch.frontend.grammar import split_words
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
@@ -65,11 +66,14 @@ def argument(element: Element) -> LaunchDescriptionEntity:
 
 @makes("append_env")
 def append_environment(element: Element) -> LaunchDescriptionEntity:
-    options: dict[str, Any] = {
-        name: parts
-        for name in ("prepend", "separator")
-        if (parts := element.parts(name)) is not None
-    }
+    options: dict[str, Any] = {}
+    for name, read in (
+        ("prepend", element.bool_or_parts),
+        ("separator", element.parts),
+    ):
+        value = read(name)
+        if value is not None:
+            options[name] = value
     return AppendEnvironmentVariable(
         element.need_parts("name"),
         element.need_parts("value"),
@@ -88,17 +92,22 @@ def reset(element: Element) -> LaunchDescriptionEntity:
 
 @makes("group")
 def group(element: Element) -> LaunchDescriptionEntity:
+    return GroupAction(**group_arguments(element))
+
+
+@reads_arguments(GroupAction)
+def group_arguments(element: Element) -> dict[str, Any]:
     scoped, forwarding = element.flag("scoped"), element.flag("forwarding")
     kept = {
         keep.need("name"): keep.need_parts("value") for keep in element.elements("keep")
     }
-    return GroupAction(
-        parse_elements(element.rest()),
-        scoped=True if scoped is None else scoped,
-        forwarding=True if forwarding is None else forwarding,
-        launch_configurations=kept,
+    return {
+        "actions": parse_elements(element.rest()),
+        "scoped": True if scoped is None else scoped,
+        "forwarding": True if forwarding is None else forwarding,
+        "launch_configurations": kept,
         **condition_of(element),
-    )
+    }
 
 
 @makes("include")
@@ -132,7 +141,7 @@ def shutdown(element: Element) -> LaunchDescriptionEntity:
 @makes("timer")
 def timer(element: Element) -> LaunchDescriptionEntity:
     return TimerAction(
-        period=element.need_parts("period"),
+        period=element.number_or_parts("period"),
         actions=parse_elements(element.rest()),
         **condition_of(element),
     )
@@ -140,37 +149,20 @@ def timer(element: Element) -> LaunchDescriptionEntity:
 
 @makes("executable")
 def executable(element: Element) -> LaunchDescriptionEntity:
+    return ExecuteProcess(**executable_arguments(element))
+
+
+@reads_arguments(ExecuteProcess)
+def executable_arguments(element: Element) -> dict[str, Any]:
     words = element.need("cmd")
     arguments = element.text("args")
     text = words if arguments is None else f"{words} {arguments}"
-    return ExecuteProcess(cmd=split_words(element, text), **execution_options(element))
+    return {"cmd": parse_words(element, text), **execution_options(element)}
 
 
-def split_words(element: Element, text: str) -> list[Any]:
-    """Split a command line into words, except within ``$(…)`` and quotes."""
-    words: list[str] = [""]
-    depth, quote = 0, ""
-    for position, character in enumerate(text):
-        if quote:
-            quote = "" if character == quote else quote
-        elif character in "'\"":
-            quote = character
-        elif text.startswith("$(", position):
-            depth += 1
-        elif character == ")" and depth:
-            depth -= 1
-        elif character.isspace() and not depth:
-            words.append("")
-            continue
-        words[-1] += character
-    return [element.parse(_unquoted(word)) for word in words if word]
-
-
-def _unquoted(word: str) -> str:
-    """Remove the quotes around a word, not those within ``$(…)``."""
-    if len(word) > 1 and word[0] == word[-1] and word[0] in "'\"":
-        return word[1:-1]
-    return word
+def parse_words(element: Element, text: str) -> list[Any]:
+    """Return the words of a command line, each with its substitutions."""
+    return [element.parse(word) for word in split_words(text)]
 
 
 def execution_options(element: Element) -> dict[str, Any]:
@@ -182,12 +174,14 @@ def execution_options(element: Element) -> dict[str, Any]:
         ("output", "output"),
         ("sigterm_timeout", "sigterm_timeout"),
         ("sigkill_timeout", "sigkill_timeout"),
-        ("emulate_tty", "emulate_tty"),
-        ("respawn", "respawn"),
     ):
         parts = element.parts(tag)
         if parts is not None:
             options[keyword] = parts
+    for tag in ("emulate_tty", "respawn"):
+        choice = element.bool_or_parts(tag)
+        if choice is not None:
+            options[tag] = choice
     for tag in ("shell", "required"):
         flag = element.flag(tag)
         if flag is not None:

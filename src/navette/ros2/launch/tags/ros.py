@@ -5,8 +5,9 @@ from typing import Any
 from navette.ros2.launch.tags.core import (
     execution_options,
     makes_simple_action,
-    split_words,
+    parse_words,
 )
+from navette.ros2.packages.launch.action import reads_arguments
 from navette.ros2.packages.launch.conditions import condition_of
 from navette.ros2.packages.launch.frontend import (
     SUBSTITUTIONS,
@@ -76,13 +77,18 @@ makes_simple_action("set_ros_log_dir", SetROSLogDir, "new_log_dir")
 
 @makes("node")
 def node(element: Element) -> LaunchDescriptionEntity:
-    return Node(
-        package=element.parts("pkg"),
-        name=element.parts("name"),
-        namespace=_namespace(element),
-        executable=element.need_parts("exec"),
+    return Node(**node_arguments(element))
+
+
+@reads_arguments(Node)
+def node_arguments(element: Element) -> dict[str, Any]:
+    return {
+        "package": element.parts("pkg"),
+        "name": element.parts("name"),
+        "namespace": _namespace(element),
+        "executable": element.need_parts("exec"),
         **_node_options(element),
-    )
+    }
 
 
 @makes("lifecycle_node")
@@ -146,7 +152,7 @@ def _node_options(element: Element) -> dict[str, Any]:
     for name, keyword in (("args", "arguments"), ("ros_args", "ros_arguments")):
         text = element.text(name)
         if text is not None:
-            options[keyword] = split_words(element, text)
+            options[keyword] = parse_words(element, text)
     options["parameters"] = _parameters(element)
     options["remappings"] = _remappings(element)
     return options

@@ -1,6 +1,7 @@
 """Base class of actions."""
 
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
 
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.conditions import ConditionalElement, condition_of
@@ -11,6 +12,20 @@ from navette.ros2.packages.launch.launch_description_entity import (
     caller_location,
 )
 from navette.ros2.packages.launch.substitution import describe_first_parts
+
+#: Class → reader of its arguments; filled by the modules of the tags.
+_READERS: dict[type, Callable[[Any], dict[str, Any]]] = {}
+_ReaderT = TypeVar("_ReaderT", bound=Callable[[Any], dict[str, Any]])
+
+
+def reads_arguments(action: type) -> Callable[[_ReaderT], _ReaderT]:
+    """Register a function that reads the arguments of a class from an element."""
+
+    def register(reader: _ReaderT) -> _ReaderT:
+        _READERS[action] = reader
+        return reader
+
+    return register
 
 
 class Action(LaunchDescriptionEntity):
@@ -29,15 +44,38 @@ class Action(LaunchDescriptionEntity):
     def parse(
         cls, entity: ConditionalElement, parser: object
     ) -> tuple[type["Action"], dict[str, Any]]:
-        """Return the class and its arguments by the attributes ``if`` and ``unless``.
+        """Return the class and its arguments, read from an element of a launch file.
 
-        Classes for ``expose_action`` add the arguments of their own attributes.
+        Those of ExecuteProcess, Node and GroupAction are all of their tag's; those of
+        other classes are ``if`` and ``unless``. Classes for ``expose_action`` add the
+        arguments of their own attributes.
         """
-        return cls, dict(condition_of(entity))
+        readers = (_READERS.get(base) for base in cls.__mro__)
+        read = next(filter(None, readers), condition_of)
+        return cls, dict(read(entity))
 
     def describe(self) -> str:
         text = describe_first_parts(self)
         return f"{type(self).__name__}({text})" if text else type(self).__name__
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities inside; they are visited if the condition holds."""
+        return []
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        return self.listed_entities() if self.condition is None else []
+
+    def listed_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities inside that listings show."""
+        return self.get_sub_entities()
+
+    def describe_conditional_sub_entities(
+        self,
+    ) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        inside = self.listed_entities()
+        if self.condition is None or not inside:
+            return []
+        return [(f"if {self.condition.describe()}", inside)]
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if self.condition is None or self.condition.evaluate(context):

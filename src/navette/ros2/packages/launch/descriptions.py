@@ -1,6 +1,7 @@
 """Descriptions of commands: command line, working directory, environment."""
 
 import os
+import re
 import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -31,6 +32,10 @@ class Executable:
         env: its whole environment (default: that of the launch).
         additional_env: added to its environment.
         arguments: appended words.
+
+    Attributes:
+        final_cmd, final_name, final_cwd, final_env: results of :meth:`prepare`; None
+            before.
     """
 
     def __init__(
@@ -57,48 +62,66 @@ class Executable:
         self.cwd = Parts.optional(cwd)
         self.env = _variables(env)
         self.additional_env = _variables(additional_env)
+        self._prefix: list[str] = []
+        self._words: list[str] = []
+        self.final_cmd: list[str] | None = None
+        self.final_name: str | None = None
+        self.final_cwd: str | None = None
+        self.final_env: dict[str, str] | None = None
 
     def describe(self) -> str:
         return " ".join(word.describe() for word in self.cmd)
 
-    def prefix_words(self, context: LaunchContext) -> list[str]:
-        """Return the words of ``prefix`` or of the argument ``launch-prefix``."""
+    def prepare(self, context: LaunchContext, action: Any = None) -> None:
+        """Perform all substitutions; the results are in ``final_cmd`` and so on."""
+        words = [word.perform(context) for word in self.cmd]
+        self.set_final(context, words, Path((words[0].split() or [""])[0]).name)
+
+    def set_final(self, context: LaunchContext, words: list[str], program: str) -> None:
+        """Perform the substitutions of all but the words, which are given.
+
+        Args:
+            program: name of the program, the label of a command without a name.
+        """
+        self._prefix = self._prefix_words(context, program)
+        self._words = words
+        self.final_cmd = [*self._prefix, *words]
+        self.final_name = context.unique_name(
+            program if self.name is None else self.name.perform(context)
+        )
+        self.final_cwd = None if self.cwd is None else self.cwd.perform(context)
+        self.final_env = self._environment(context)
+
+    def _prefix_words(self, context: LaunchContext, program: str) -> list[str]:
+        """Return the words of ``prefix`` or of the argument ``launch-prefix``.
+
+        ``launch-prefix-filter`` is a pattern of the programs that get the latter.
+        """
         if self.prefix is not None:
             return shlex.split(self.prefix.perform(context))
-        return shlex.split(context.launch_configurations.get("launch-prefix", ""))
+        given = context.launch_configurations
+        pattern = given.get("launch-prefix-filter")
+        if pattern is not None and not re.match(pattern, program):
+            return []
+        return shlex.split(given.get("launch-prefix", ""))
 
-    def working_folder(self, context: LaunchContext) -> str | None:
-        """Return the working directory; None: that of the launch."""
-        if self.cwd is None:
-            return None
-        folder = self.cwd.perform(context)
-        if not Path(folder).is_dir():
-            raise InvalidLaunchValueError(f"cwd {folder!r}: no such folder")
-        return folder
-
-    def environment(self, context: LaunchContext) -> dict[str, str] | None:
+    def _environment(self, context: LaunchContext) -> dict[str, str] | None:
         """Return the whole environment; None: that of the launch."""
         if self.env is None and self.additional_env is None:
             return None
         base = dict(os.environ) if self.env is None else _perform(context, self.env)
         return base | _perform(context, self.additional_env or [])
 
-    def command(
-        self, context: LaunchContext, *, shell: bool, tty: bool
-    ) -> LaunchCommand:
-        """Return the command, with a label that is unique in the launch."""
-        words = [word.perform(context) for word in self.cmd]
-        name = (
-            self.name.perform(context)
-            if self.name is not None
-            else Path(words[0].split()[0] if shell else words[0]).name
-        )
+    def command(self, *, shell: bool, tty: bool) -> LaunchCommand:
+        """Return the prepared command."""
+        if self.final_cwd is not None and not Path(self.final_cwd).is_dir():
+            raise InvalidLaunchValueError(f"cwd {self.final_cwd!r}: no such folder")
         return LaunchCommand(
-            label=context.unique_name(name),
-            argv=tuple(words),
-            prefix=tuple(self.prefix_words(context)),
-            cwd=self.working_folder(context),
-            env=self.environment(context),
+            label=self.final_name or "",
+            argv=tuple(self._words),
+            prefix=tuple(self._prefix),
+            cwd=self.final_cwd,
+            env=self.final_env,
             shell=shell,
             tty=tty,
         )

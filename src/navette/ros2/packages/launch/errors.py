@@ -56,5 +56,5 @@ class InvalidLaunchFileError(NavetteError, RuntimeError):
         super().__init__("; ".join(filter(None, [text or kind, *problems])))
 
 
-class InvalidLaunchValueError(InvalidValueError, TypeError):
+class InvalidLaunchValueError(InvalidValueError, TypeError, RuntimeError):
     """An argument of an action or substitution has the wrong type or value."""

@@ -6,7 +6,6 @@ from typing import Any
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
-    LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
 
@@ -28,16 +27,17 @@ class EventHandler:
         handle_once: bool = False,
     ) -> None:
         self._matcher = matcher
-        self.entities = normalize_to_list_of_entities(entities)
+        if isinstance(entities, (list, tuple)):
+            self.entities: list[Any] = list(entities)  # checked when they are visited
+        else:
+            self.entities = normalize_to_list_of_entities(entities)
         self.handle_once = handle_once
 
     def matches(self, event: Event) -> bool:
         """Return whether to call :meth:`handle` with this event."""
         return self._matcher(event)
 
-    def handle(
-        self, event: Event, context: LaunchContext
-    ) -> list[LaunchDescriptionEntity]:
+    def handle(self, event: Event, context: LaunchContext) -> Any:
         """Return the entities to visit; ``context.locals.event`` is the event."""
         context.extend_locals({"event": event})
         if self.handle_once:
@@ -72,10 +72,6 @@ class CallbackHandler(EventHandler):
             handle_once=handle_once,
         )
 
-    def handle(
-        self, event: Event, context: LaunchContext
-    ) -> list[LaunchDescriptionEntity]:
+    def handle(self, event: Event, context: LaunchContext) -> Any:
         entities = super().handle(event, context)
-        if self._callback is None:
-            return entities
-        return normalize_to_list_of_entities(self._callback(event, context))
+        return entities if self._callback is None else self._callback(event, context)

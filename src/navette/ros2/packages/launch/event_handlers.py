@@ -20,7 +20,6 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     caller_location,
-    normalize_to_list_of_entities,
 )
 
 __all__ = [
@@ -68,9 +67,9 @@ class OnActionEventBase(CallbackHandler):
             action = getattr(event, "action", None)
             if not isinstance(action, target_action_cls):
                 return False
-            if action_matcher is None or is_action:
-                return action_matcher is None or action is action_matcher
-            return bool(action_matcher(action))
+            if callable(action_matcher):
+                return bool(action_matcher(action))
+            return action_matcher is None or action is action_matcher
 
         super().__init__(matcher=matches, callback=on_event, handle_once=handle_once)
 
@@ -138,11 +137,9 @@ class OnProcessIO(OnActionEventBase):
     ) -> None:
         callbacks = (on_stdin, on_stdout, on_stderr)
 
-        def on_event(
-            event: ProcessIO, context: LaunchContext
-        ) -> list[LaunchDescriptionEntity]:
+        def on_event(event: ProcessIO, context: LaunchContext) -> Any:
             callback = callbacks[event.fd]
-            return normalize_to_list_of_entities(callback(event) if callback else None)
+            return callback(event) if callback else None
 
         super().__init__(
             action_matcher=target_action,
@@ -172,7 +169,7 @@ class OnIncludeLaunchDescription(EventHandler):
             handle_once=handle_once,
         )
 
-    def handle(self, event: Event, context: Any) -> list[LaunchDescriptionEntity]:
+    def handle(self, event: Event, context: Any) -> Any:
         super().handle(event, context)
         return [event.launch_description]  # type: ignore[attr-defined] # by the matcher
 

@@ -4,20 +4,24 @@ The context is the lowest layer of this package. It refers to substitutions, ent
 and event handlers by the protocols below; their classes import the context.
 """
 
+import asyncio
 import os
-from collections import deque
+import queue
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import SimpleNamespace
 from typing import Any, Protocol
 
+from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.running import Runner
 from navette.ros2.packages.launch.subprocesses import SubprocessRunner
 from navette.runtime import SystemClock
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
+
+#: Location of a description that a program made.
+SCRIPT = "<script>"
 
 
 class ContextSubstitution(Protocol):
@@ -37,6 +41,9 @@ class ContextEntity(Protocol):
     def describe(self) -> str:
         """Describe the entity in an error message."""
 
+    def get_asyncio_future(self) -> "asyncio.Future[Any] | None":
+        """Return what the launch waits for."""
+
 
 class ContextHandler(Protocol):
     """An event handler."""
@@ -45,9 +52,7 @@ class ContextHandler(Protocol):
 
     def matches(self, event: Event, /) -> bool: ...
 
-    def handle(
-        self, event: Event, context: "LaunchContext", /
-    ) -> Sequence[ContextEntity] | None: ...
+    def handle(self, event: Event, context: "LaunchContext", /) -> Any: ...
 
     def describe(self) -> str: ...
 
@@ -67,6 +72,7 @@ class LaunchContext:
         notes: state that actions of one kind share, by a name of theirs.
         busy: what keeps the launch running; without any, the launch is over.
         failed_labels: processes that ended by themselves with an error.
+        make_asyncio_loop: set by the service while it runs.
     """
 
     def __init__(
@@ -85,15 +91,17 @@ class LaunchContext:
         self.launch_configurations: dict[str, str] = {}
         self.known_arguments: set[str] = set()
         self.notes: dict[str, Any] = {}
-        self.events: deque[Event] = deque()
+        self._event_queue: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self.busy: set[object] = set()
         self.failed_labels: list[str] = []
-        self._initial_environment: dict[str, str] | None = None
+        self._initial_environment = dict(os.environ)
         self._locals: list[dict[str, Any]] = [{}]
         self._globals: dict[str, Any] = {}
         self._configuration_stack: list[dict[str, str]] = []
         self._environment_stack: list[dict[str, str]] = []
-        self._handlers: list[ContextHandler] = []
+        self._event_handlers: list[ContextHandler] = []
+        self._asyncio_loop: asyncio.AbstractEventLoop | None = None
+        self.make_asyncio_loop: Callable[[], asyncio.AbstractEventLoop] | None = None
         self._name_count = 0
         self._scratch: TemporaryDirectory[str] | None = None
         self._on_close: list[Callable[[], None]] = []
@@ -104,9 +112,19 @@ class LaunchContext:
         return os.environ
 
     @property
-    def locals(self) -> SimpleNamespace:
+    def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
+        """Loop for coroutines of actions while the launch runs, else None."""
+        if self._asyncio_loop is None and self.make_asyncio_loop is not None:
+            self._asyncio_loop = self.make_asyncio_loop()
+        return self._asyncio_loop
+
+    def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
+        self._asyncio_loop = loop
+
+    @property
+    def locals(self) -> "LaunchLocals":
         """Values of the present scope (an include, an event handler)."""
-        return SimpleNamespace(**self.get_locals_as_dict())
+        return LaunchLocals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
         return {**self._globals, **self._locals[-1]}
@@ -117,17 +135,19 @@ class LaunchContext:
     def extend_globals(self, values: Mapping[str, Any]) -> None:
         self._globals.update(values)
 
-    def push_locals(self) -> None:
+    def _push_locals(self) -> None:
         self._locals.append(dict(self._locals[-1]))
 
-    def pop_locals(self) -> None:
+    def _pop_locals(self) -> None:
+        if len(self._locals) == 1:
+            raise LaunchError("the scope of locals ends more often than it begins")
         self._locals.pop()
 
     @property
     def launch_file(self) -> Path | None:
         """The launch file that is read or run."""
         path = self._locals[-1].get("current_launch_file_path")
-        return None if path is None else Path(path)
+        return None if path in (None, SCRIPT) else Path(path)
 
     def perform_substitution(
         self, value: str | ContextSubstitution | Iterable[str | ContextSubstitution]
@@ -156,45 +176,63 @@ class LaunchContext:
 
     def close(self) -> None:
         """Restore the environment, call the registered functions, delete files."""
-        self.reset_environment()
+        self._reset_environment()
         for function in self._on_close:
             function()
         if self._scratch is not None:
             self._scratch.cleanup()
 
-    def push_launch_configurations(self) -> None:
+    def _push_launch_configurations(self) -> None:
         self._configuration_stack.append(dict(self.launch_configurations))
 
-    def pop_launch_configurations(self) -> None:
+    def _pop_launch_configurations(self) -> None:
+        if not self._configuration_stack:
+            raise LaunchError(
+                "the scope of configurations ends more often than it begins"
+            )
         kept = self._configuration_stack.pop()
         self.launch_configurations.clear()
         self.launch_configurations.update(kept)
 
-    def push_environment(self) -> None:
+    def _push_environment(self) -> None:
         self._environment_stack.append(dict(os.environ))
 
-    def pop_environment(self) -> None:
+    def _pop_environment(self) -> None:
+        if not self._environment_stack:
+            raise LaunchError("the scope of variables ends more often than it begins")
         _set_environment(self._environment_stack.pop())
 
     def save_environment(self) -> None:
         """Store the environment at the start of the launch."""
         self._initial_environment = dict(os.environ)
 
-    def reset_environment(self) -> None:
+    def _reset_environment(self) -> None:
         """Restore the environment of the launch's start."""
-        if self._initial_environment is not None:
-            _set_environment(self._initial_environment)
-
-    def emit_event(self, event: Event) -> None:
-        """Queue an event; it is handled after the present entity."""
-        self.events.append(event)
+        _set_environment(self._initial_environment)
 
     def emit_event_sync(self, event: Event) -> None:
-        self.emit_event(event)
+        """Queue an event; it is handled after the present entity."""
+        self._event_queue.put(event)
+
+    async def emit_event(self, event: Event) -> None:
+        """Queue an event, in a coroutine of an action."""
+        self.emit_event_sync(event)
+
+    def has_events(self) -> bool:
+        return not self._event_queue.empty()
+
+    def next_event(self) -> Event:
+        """Remove and return the oldest queued event; there must be one."""
+        return self._event_queue.get_nowait()
+
+    def clear_events(self) -> None:
+        while self.has_events():
+            self.next_event()
 
     def emit_from_thread(self, event: Event) -> None:
         """Queue an event from any thread."""
-        self.loop.call_soon_threadsafe(lambda: self.emit_event(event), "launch")
+        self.emit_event_sync(event)
+        self.loop.call_soon_threadsafe(lambda: None, "launch")
 
     def call_after(self, seconds: float, function: Any, source: str) -> Call:
         """Call ``function`` after ``seconds``; cancel with ``.cancel()``."""
@@ -203,13 +241,13 @@ class LaunchContext:
 
     def visit_later(self, entities: Iterable[ContextEntity]) -> None:
         """Queue a visit of entities in the present scope."""
-        self.emit_event(VisitEvent(list(entities), dict(self._locals[-1])))
+        self.emit_event_sync(VisitEvent(list(entities), dict(self._locals[-1])))
 
     def register_event_handler(
         self, handler: ContextHandler, append: bool = False
     ) -> None:
         """Add a handler; the newest is called first, unless appended."""
-        self._handlers.insert(len(self._handlers) if append else 0, handler)
+        self._event_handlers.insert(len(self._event_handlers) if append else 0, handler)
 
     def unregister_event_handler(self, handler: ContextHandler) -> None:
         """Remove a handler.
@@ -217,14 +255,30 @@ class LaunchContext:
         Raises:
             ValueError: it is not registered, as in ROS 2.
         """
-        self._handlers.remove(handler)
+        self._event_handlers.remove(handler)
 
     @property
     def event_handlers(self) -> tuple[ContextHandler, ...]:
-        return tuple(self._handlers)
+        return tuple(self._event_handlers)
 
     def is_registered(self, handler: ContextHandler) -> bool:
-        return handler in self._handlers
+        return handler in self._event_handlers
+
+
+class LaunchLocals:
+    """Values of a scope, as attributes that cannot be changed."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        vars(self).update(values)
+
+    def __getattr__(self, name: str) -> Any:
+        known = ", ".join(vars(self)) or "none"
+        raise AttributeError(f"no local {name!r} in this scope; known: {known}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(
+            f"local {name!r} cannot be set here; use context.extend_locals()"
+        )
 
 
 class VisitEvent(Event):

@@ -1,7 +1,7 @@
 """Launch description: the entities of one launch file."""
 
 from collections.abc import Iterable
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
 
 from navette.ros2.packages.launch.launch_context import LaunchContext
@@ -56,27 +56,53 @@ class LaunchDescription(LaunchDescriptionEntity):
         Only the first declaration of a name counts.
         """
         found: dict[str, Any] = {}
-        for entity in walk(self):
-            name = getattr(entity, "declares", None)
-            if name is not None:
-                found.setdefault(name, entity)
+        for argument, _ in self.get_launch_arguments_with_includes():
+            found.setdefault(argument.name, argument)
         return list(found.values())
 
+    def get_launch_arguments_with_includes(self) -> list[tuple[Any, tuple[Any, ...]]]:
+        """Return each declaration with the includes around it, outer ones first."""
+        found = []
+        for entity, path in _walk(self):
+            if getattr(entity, "declares", None) is not None:
+                entity._conditionally_included = path.is_conditional
+                found.append((entity, path.includes))
+        return found
 
-def walk(
-    root: LaunchDescriptionEntity, files: tuple[Path, ...] = ()
-) -> Iterable[LaunchDescriptionEntity]:
+
+@dataclass(frozen=True)
+class _Path:
+    """How a walk arrived at an entity."""
+
+    is_conditional: bool = False
+    includes: tuple[Any, ...] = ()
+
+
+def walk(root: LaunchDescriptionEntity) -> Iterable[Any]:
     """Yield ``root`` and everything that it is known to lead to, in order.
 
     A file that includes itself (under a condition) is entered once.
     """
-    yield root
-    conditional = root.describe_conditional_sub_entities()
-    inside = [*root.describe_sub_entities(), *(e for _, es in conditional for e in es)]
-    file = getattr(root, "included_file", None)
-    if file is not None:
-        if file in files:
-            return
-        files = (*files, file)
-    for entity in inside:
-        yield from walk(entity, files)
+    return (entity for entity, _ in _walk(root))
+
+
+_START = _Path()
+
+
+def _walk(root: Any, path: _Path = _START) -> Iterable[tuple[Any, _Path]]:
+    if getattr(root, "condition", None) is not None:
+        path = replace(path, is_conditional=True)
+    yield root, path
+    inside = [(path, root.describe_sub_entities())]
+    under_condition = replace(path, is_conditional=True)
+    for _, entities in root.describe_conditional_sub_entities():
+        inside.append((under_condition, entities))
+    file = getattr(root, "included_file", None)  # known after it has been described
+    if file is not None and file in [each.included_file for each in path.includes]:
+        return
+    outer = (*path.includes, root) if hasattr(root, "argument_names") else path.includes
+    for inner, entities in inside:
+        for entity in entities:
+            if getattr(entity, "resets_arguments", False):
+                break  # nothing from outside holds after it
+            yield from _walk(entity, replace(inner, includes=outer))

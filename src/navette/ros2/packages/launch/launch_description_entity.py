@@ -1,5 +1,6 @@
 """Base class of everything that a launch description contains."""
 
+import asyncio
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -37,12 +38,9 @@ class LaunchDescriptionEntity:
         """Return entities that may be visited, each list with its condition."""
         return []
 
-    def get_asyncio_future(self) -> None:
-        """Return None: what an entity does is over when it has been visited.
-
-        What runs on, such as a process, is in :attr:`LaunchContext.busy`.
-        """
-        return
+    def get_asyncio_future(self) -> "asyncio.Future[Any] | None":
+        """Return a future that the launch waits for; called after the visit."""
+        return None
 
 
 SomeEntitiesType: TypeAlias = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchFileError
 from navette.ros2.packages.launch.frontend import FORMATS, parse_launch_file
-from navette.ros2.packages.launch.launch_context import LaunchContext
+from navette.ros2.packages.launch.launch_context import SCRIPT, LaunchContext
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.substitution import (
     Parts,
@@ -43,7 +43,7 @@ class LaunchDescriptionSource:
     def __init__(
         self,
         launch_description: LaunchDescription | None = None,
-        location: Any = "<script>",
+        location: Any = SCRIPT,
         method: str = "unspecified mechanism from a script",
     ) -> None:
         self._description = launch_description
@@ -53,8 +53,11 @@ class LaunchDescriptionSource:
 
     @property
     def location(self) -> str:
-        """The path if it is known, else its substitutions."""
-        return str(self.path) if self.path else self._location.describe()
+        """The path as given, or its substitutions until they are known."""
+        text = constant_text(self._location)
+        if text is not None:
+            return text
+        return self._location.describe() if self.path is None else str(self.path)
 
     def read(self, path: Path) -> LaunchDescription:
         """Read a file; overridden by formats."""
@@ -66,18 +69,19 @@ class LaunchDescriptionSource:
         Raises:
             InvalidLaunchFileError: the file cannot be read.
         """
-        if self._description is None:
-            path = Path(self._location.perform(context))
-            self._description = self._load(path)
+        if self._description is not None:
+            location = constant_text(self._location)
+            if self.path is None and location and Path(location).is_file():
+                self.path = Path(location).resolve()
+        else:
+            self._description = self._load(Path(self._location.perform(context)))
         return self._description
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
         """Return the description, or None if its path depends on the launch."""
-        texts = [p.text for p in self._location if isinstance(p, TextSubstitution)]
-        if self._description is None and len(texts) == len(self._location):
-            path = "".join(texts)
-            if path != "<script>":
-                self._description = self._load(Path(path))
+        path = constant_text(self._location)
+        if self._description is None and path not in (None, SCRIPT):
+            self._description = self._load(Path(str(path)))
         return self._description
 
     def _load(self, path: Path) -> LaunchDescription:
@@ -85,6 +89,12 @@ class LaunchDescriptionSource:
             raise InvalidLaunchFileError(f"launch file {path} does not exist")
         self.path = path.resolve()
         return self.read(self.path)
+
+
+def constant_text(location: Parts) -> str | None:
+    """Return the text of parts without substitutions, else None."""
+    texts = [part.text for part in location if isinstance(part, TextSubstitution)]
+    return "".join(texts) if len(texts) == len(location) else None
 
 
 _FUNCTION = "generate_launch_description"
@@ -99,8 +109,11 @@ def load_python_launch_file_as_module(path: Path | str) -> ModuleType:
 
     Raises:
         InvalidPythonLaunchFileError: the file raised; names the line.
+        FileNotFoundError: no such file.
     """
     path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such launch file")
     loader = SourceFileLoader(f"navette_launch_file_{abs(hash(path))}", str(path))
     spec = spec_from_loader(loader.name, loader)
     assert spec is not None, "created from a loader"

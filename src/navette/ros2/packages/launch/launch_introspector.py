@@ -15,7 +15,9 @@ class LaunchIntrospector:
 
 
 def _lines(entity: LaunchDescriptionEntity, indent: str) -> list[str]:
-    inside = entity.describe_sub_entities()
+    inside = list(entity.describe_sub_entities())
+    for _, entities in entity.describe_conditional_sub_entities():
+        inside += entities
     lines = [indent + entity.describe()]
     for position, each in enumerate(inside):
         is_last = position == len(inside) - 1

@@ -1,10 +1,14 @@
 """Launch service: visits entities, passes events to handlers, shuts down in order."""
 
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+import asyncio
+from collections.abc import Callable, Coroutine, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from threading import get_ident
 from typing import Any
 
 from navette.errors import CallbackError
+from navette.ros2.packages.launch.asyncio_bridge import AsyncioBridge
 from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.events import Shutdown
@@ -15,6 +19,9 @@ from navette.ros2.packages.launch.launch_context import (
     VisitEvent,
 )
 from navette.ros2.packages.launch.launch_description import LaunchDescription
+from navette.ros2.packages.launch.launch_description_entity import (
+    normalize_to_list_of_entities,
+)
 from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import console, get_logger
 from navette.ros2.packages.launch.running import Runner
@@ -50,15 +57,24 @@ class LaunchService:
         self._shutting_down = False
         self._is_stalled = False
         self._shutdown_when_idle = True
-        self.context = LaunchContext(
+        self.__context = LaunchContext(
             argv=argv,
             noninteractive=noninteractive,
             loop=loop,
             runner=runner,
         )
+        self._bridge = AsyncioBridge(self.context, self._fail_of_future)
+        self._async_run: _AsyncRun | None = None
         self._start_checks: list[Callable[[], None]] = []
         # A caller with its own runner prints the messages itself.
-        self._console = console(debug=debug) if runner is None else nullcontext()
+        self._console: Callable[[], AbstractContextManager[None]] = (
+            partial(console, debug=debug) if runner is None else nullcontext
+        )
+
+    @property
+    def context(self) -> LaunchContext:
+        """What the actions of the launch read and change."""
+        return self.__context
 
     @property
     def event_loop(self) -> EventLoop:
@@ -77,9 +93,19 @@ class LaunchService:
         """Call ``check`` once the descriptions have been visited; it may raise."""
         self._start_checks.append(check)
 
-    def shutdown(self, force_sync: bool = False, reason: str = "requested") -> None:
-        """End everything from any thread; :meth:`run` returns then."""
+    def shutdown(
+        self, force_sync: bool = False, reason: str = "requested"
+    ) -> Coroutine[Any, Any, None] | None:
+        """End everything from any thread; :meth:`run` returns then.
+
+        Returns:
+            A coroutine that waits for the end, in the thread of :meth:`run_async`.
+        """
         self.emit_event(Shutdown(reason=reason))
+        run = self._async_run
+        if run is None or force_sync or run.thread != get_ident():
+            return None
+        return run.wait()
 
     def escalate(self) -> None:
         """Send the next, stronger signal to all processes, from any thread."""
@@ -91,35 +117,57 @@ class LaunchService:
                 item.escalate()
 
     def run(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run to the end; return 0, or 1 if the launch or a process failed.
+        """Run to the end; return 0, or 1 if the launch failed.
 
-        A failed launch ends what it has started.
+        A failed launch ends what it has started. Processes that failed are in
+        ``context.failed_labels``.
         """
         self._shutdown_when_idle = shutdown_when_idle
-        with self._console:
+        self._shutting_down = self.context.is_shutdown = False
+        self.errors.clear()
+        with self._console():
             return self._run()
+
+    async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
+        """Run to the end in a thread, as :meth:`run` does."""
+        run = self._async_run = _AsyncRun()
+        try:
+            return await asyncio.to_thread(
+                self.run, shutdown_when_idle=shutdown_when_idle
+            )
+        except asyncio.CancelledError:
+            self.shutdown(reason="cancelled", force_sync=True)
+            raise
+        finally:
+            run.over.set()
+            self._async_run = None
 
     def _run(self) -> int:
         context = self.context
         context.save_environment()
+        bridge = self._bridge = AsyncioBridge(context, self._fail_of_future)
+        context.make_asyncio_loop = bridge.loop
         try:
             while not self._is_over():
                 try:
                     self._handle_events()
                     context.loop.run(
-                        done=lambda: bool(context.events) or self._is_idle()
+                        done=lambda: context.has_events() or self._is_idle()
                     )
                     self._check_stall()
                 except CallbackError as error:
                     self._fail(error)
         finally:
+            context.make_asyncio_loop = None
+            context._set_asyncio_loop(None)
+            bridge.close()
             context.close()
             context.runner.close()
-        return FAILED if self.errors or context.failed_labels else SUCCEEDED
+        return FAILED if self.errors else SUCCEEDED
 
     def _is_idle(self) -> bool:
         context = self.context
-        if context.events or context.busy:
+        if context.has_events() or context.busy:
             return False
         return self._shutting_down or self._shutdown_when_idle
 
@@ -131,24 +179,26 @@ class LaunchService:
             return False
         if self._shutting_down:
             return True
-        self.context.emit_event(Shutdown(reason="all processes and timers have ended"))
+        self.context.emit_event_sync(
+            Shutdown(reason="all processes and timers have ended")
+        )
         return False
 
     def _check_stall(self) -> None:
         """Shut down if a virtual clock has no event left to advance to."""
         context = self.context
-        has_no_event = context.loop.clock.is_virtual and not context.events
+        has_no_event = context.loop.clock.is_virtual and not context.has_events()
         self._is_stalled = has_no_event and not self._is_idle()
         if self._is_stalled and not self._shutting_down:
-            context.emit_event(Shutdown(reason="no further event"))
+            context.emit_event_sync(Shutdown(reason="no further event"))
 
     def _handle_events(self) -> None:
         context = self.context
-        while context.events:
-            event = context.events.popleft()
+        while context.has_events():
+            event = context.next_event()
             try:
                 self._handle(event)
-                if not context.events:
+                if not context.has_events():
                     checks, self._start_checks = self._start_checks, []
                     for check in checks:
                         _locate_errors("command line", "launch arguments", check)
@@ -160,9 +210,7 @@ class LaunchService:
         if isinstance(event, VisitEvent):
             self._visit_all(event.entities, event.scope)
             return
-        if isinstance(event, Shutdown):
-            if self._shutting_down:
-                return
+        if isinstance(event, Shutdown) and not self._shutting_down:
             self._shutting_down = context.is_shutdown = True
             context.extend_globals({"event": event})
         for handler in context.event_handlers:
@@ -172,27 +220,31 @@ class LaunchService:
 
     def _call_handler(self, handler: ContextHandler, event: Event) -> None:
         context = self.context
-        context.push_locals()
+        context._push_locals()
         try:
             where = getattr(handler, "origin", "") or "event handler"
             entities = _locate_errors(
                 where, handler.describe(), lambda: handler.handle(event, context)
             )
-            for entity in entities or []:
+            for entity in _locate_errors(
+                where,
+                handler.describe(),
+                lambda: normalize_to_list_of_entities(entities),
+            ):
                 self._visit(entity)
         finally:
-            context.pop_locals()
+            context._pop_locals()
 
     def _visit_all(
         self, entities: Sequence[ContextEntity], scope: dict[str, Any]
     ) -> None:
-        self.context.push_locals()
+        self.context._push_locals()
         self.context.extend_locals(scope)
         try:
             for entity in entities:
                 self._visit(entity)
         finally:
-            self.context.pop_locals()
+            self.context._pop_locals()
 
     def _visit(self, entity: ContextEntity) -> None:
         found = _locate_errors(
@@ -200,8 +252,14 @@ class LaunchService:
             entity.describe(),
             lambda: entity.visit(self.context),
         )
+        future = entity.get_asyncio_future()
+        if future is not None and not future.done():
+            self._bridge.wait_for(future)
         for each in found or []:
             self._visit(each)
+
+    def _fail_of_future(self, error: BaseException) -> None:
+        self._fail(LaunchError(f"coroutine of an action: {error!r}"))
 
     def _fail(self, error: LaunchError | CallbackError) -> None:
         cause = error.__cause__
@@ -211,8 +269,19 @@ class LaunchService:
             error = LaunchError(str(error))
         self.errors.append(error)
         _log.error("%s", error)
-        self.context.events.clear()
-        self.context.emit_event(Shutdown(reason="the launch failed"))
+        self.context.clear_events()
+        self.context.emit_event_sync(Shutdown(reason="the launch failed"))
+
+
+class _AsyncRun:
+    """A run whose caller waits in an asyncio loop."""
+
+    def __init__(self) -> None:
+        self.thread = get_ident()
+        self.over = asyncio.Event()
+
+    async def wait(self) -> None:
+        await self.over.wait()
 
 
 def _locate_errors(where: str, entity: str, work: Callable[[], Any]) -> Any:

@@ -1,5 +1,6 @@
 """Managed process of a launch: its output is labelled, its life cycle causes events."""
 
+import os
 from typing import Any, Protocol
 
 from navette.ros2.packages.launch.events.process import (
@@ -50,24 +51,25 @@ class LaunchedProcess(ManagedProcess):
         self._action = action
         self._context = context
         self._last_pid = 0
+        self._env: dict[str, str] = {}
 
     @property
     def details(self) -> dict[str, Any]:
         """What events report about the process."""
         assert self.command is not None, "started"
-        env = self.command.env
         return {
             "action": self._action,
             "name": self.command.label,
             "cmd": self.command.words,
             "cwd": self.command.cwd,
-            "env": None if env is None else dict(env),
+            "env": self._env,
             "pid": self._last_pid,
         }
 
     def spawn(self) -> ProcessHandle:
         self.command = self._action.make_command(self._context)
         self.label = self.command.label
+        self._env = dict(os.environ if self.command.env is None else self.command.env)
         self._output = self._action.make_output(self._context, self.label)
         if self._action.log_cmd:
             get_logger(self.label).info("%s", " ".join(self.command.words))
@@ -76,7 +78,7 @@ class LaunchedProcess(ManagedProcess):
     def on_started(self) -> None:
         self._last_pid = self.pid or 0
         get_logger(self.label).info("process started with pid [%d]", self._last_pid)
-        self._context.emit_event(ProcessStarted(**self.details))
+        self._context.emit_event_sync(ProcessStarted(**self.details))
 
     def on_output(self, stream: str, data: bytes) -> None:
         output, details = self._output, self.details
@@ -84,7 +86,7 @@ class LaunchedProcess(ManagedProcess):
 
         def report() -> None:
             output.write(stream, data)
-            self._context.emit_event(kind(text=data, **details))
+            self._context.emit_event_sync(kind(text=data, **details))
 
         self.loop.call_soon_threadsafe(report, self.label)
 
@@ -94,7 +96,7 @@ class LaunchedProcess(ManagedProcess):
     def on_exited(self, code: int) -> None:
         self._output.close()
         self._log_exit(code)
-        self._context.emit_event(ProcessExited(returncode=code, **self.details))
+        self._context.emit_event_sync(ProcessExited(returncode=code, **self.details))
 
     def _log_exit(self, code: int) -> None:
         log, pid = get_logger(self.label), self._last_pid

@@ -6,43 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.logging import launch_config
+from navette.ros2.packages.launch.logging.outputs import STREAMS, places_of_stream
 from navette.supervisor import LineSplitter
 
-STREAMS = ("stdout", "stderr")
 _COLOURS = (36, 32, 35, 33, 34, 96)  # cyan, green, magenta, yellow, blue, bright cyan
-_MODES: dict[str, dict[str, set[str]]] = {
-    "screen": {"stdout": {"screen"}, "stderr": {"screen"}},
-    "log": {"stdout": {"log"}, "stderr": {"log", "screen"}},
-    "both": {"stdout": {"log", "screen"}, "stderr": {"log", "screen"}},
-    "own_log": {"stdout": {"log"}, "stderr": {"log"}},
-    "full": {"stdout": {"log", "screen"}, "stderr": {"log", "screen"}},
-}
-
-
-def output_places(value: object) -> dict[str, set[str]]:
-    """Return the destinations (``screen``, ``log``) of each stream for ``output=``.
-
-    Raises:
-        InvalidLaunchValueError: unknown destination; lists the known ones.
-    """
-    if isinstance(value, dict):
-        places: dict[str, set[str]] = {stream: set() for stream in STREAMS}
-        for stream, word in value.items():
-            streams = STREAMS if stream == "both" else (stream,)
-            for each in streams:
-                if each not in STREAMS:
-                    raise InvalidLaunchValueError(
-                        f"output: stream {each!r}; expected stdout, stderr or both"
-                    )
-                places[each] |= output_places(word)[each]
-        return places
-    if value not in _MODES:
-        raise InvalidLaunchValueError(
-            f"output {value!r}; expected {', '.join(_MODES)}, or a dict of streams"
-        )
-    return _MODES[str(value)]
 
 
 def _shown(label: str) -> str:
@@ -59,7 +27,7 @@ class LabelledOutput:
 
     Args:
         label: such as ``talker-1``.
-        places: result of :func:`output_places`.
+        places: result of :func:`launch.logging.output_places`.
     """
 
     def __init__(
@@ -89,12 +57,12 @@ class LabelledOutput:
     def _print(self, stream: str, texts: list[str]) -> None:
         if not texts:
             return
-        places = self._places[stream]
+        places = places_of_stream(self._places, stream)
         if "screen" in places:
             terminal = sys.stdout if stream == "stdout" else sys.stderr
             terminal.write("".join(self._format(text) + "\n" for text in texts))
             terminal.flush()
-        if "log" in places:
+        if places & {"log", "own_log"}:
             log = self._open_log()
             log.write("".join(text + "\n" for text in texts))
             log.flush()

@@ -9,6 +9,7 @@ from navette.ros2.packages.launch.errors import (
 )
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import Parts
+from navette.ros2.packages.launch.utilities.type_utils import coerce_to_type
 
 TRUE = ("true", "1")
 FALSE = ("false", "0")
@@ -27,10 +28,14 @@ def parse_bool(text: str) -> bool:
 
 
 def perform_bool(context: LaunchContext, value: Any) -> bool:
-    """Return a bool given as such or as text."""
+    """Return a bool given as such or as text, also ``on``, ``off``, ``yes``, ``no``."""
     if isinstance(value, bool):
         return value
-    return parse_bool(Parts.of(value).perform(context))
+    text = Parts.of(value).perform(context).strip().lower()
+    try:
+        return bool(coerce_to_type(text, bool))
+    except ValueError:
+        return parse_bool(text)
 
 
 def perform_seconds(context: LaunchContext, value: Any, what: str) -> float:

@@ -1,4 +1,5 @@
 import os
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -90,16 +91,16 @@ def test_the_text_of_a_substitution(
     ("substitution", "reason"),
     [
         (LaunchConfiguration("nam"), "'nam' does not exist \\(known: .*name"),
-        (EnvironmentVariable("NOT_SET_HERE"), "'NOT_SET_HERE' is not set"),
+        (EnvironmentVariable("NOT_SET_HERE"), "'NOT_SET_HERE' does not exist"),
         (NotSubstitution("perhaps"), "'perhaps': expected true"),
         (FindExecutable(name="no-such-thing"), "'no-such-thing' is not on PATH"),
-        (FileContent("/no/such/file"), "/no/such/file: cannot be read"),
+        (FileContent("/no/such/file"), "File not found: /no/such/file"),
         (Command("no-such-thing"), "no-such-thing"),
-        (Command([sys.executable, " -c 'exit(3)'"]), "failed with code 3"),
+        (Command([sys.executable, " -c 'exit(3)'"]), "command failed.*code 3"),
         (LocalSubstitution("event.pid"), "unknown local 'event.pid'"),
         (ThisLaunchFileDir(), "no launch file is running"),
         (PythonExpression("burger == 1"), "unknown name 'burger'"),
-        (PythonExpression("1", ["os"]), "module 'os' is not available"),
+        (PythonExpression("1", ["no_module"]), "No module named 'no_module'"),
     ],
 )
 def test_a_failed_substitution_lists_the_known_values(
@@ -135,7 +136,7 @@ def test_environment_and_files(
 def test_an_anonymous_name_is_stable(context: LaunchContext) -> None:
     first = AnonName("rviz").perform(context)
     assert first == AnonName("rviz").perform(context)
-    assert first.startswith(f"rviz_{os.getpid()}")
+    assert re.fullmatch(rf"rviz_\w+_{os.getpid()}_\d+", first)
     assert AnonName("other").perform(context) != first
 
 

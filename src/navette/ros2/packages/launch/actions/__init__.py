@@ -38,6 +38,7 @@ from navette.ros2.packages.launch.actions.log_info import (
     LogInfo,
     LogWarning,
 )
+from navette.ros2.packages.launch.actions.opaque_coroutine import OpaqueCoroutine
 from navette.ros2.packages.launch.actions.opaque_function import OpaqueFunction
 from navette.ros2.packages.launch.actions.timer_action import TimerAction
 
@@ -56,6 +57,7 @@ __all__ = [
     "LogError",
     "LogInfo",
     "LogWarning",
+    "OpaqueCoroutine",
     "OpaqueFunction",
     "PopEnvironment",
     "PopLaunchConfigurations",

@@ -35,10 +35,15 @@ class DeclareLaunchArgument(Action):
             )
         self.name = name
         self.default_value = Parts.optional(default_value)
-        self.description = description or ""
+        self.description = description or "no description given"
         self.choices = None if choices is None else list(choices)
+        #: Whether the argument exists only under a condition; set by
+        #: :meth:`LaunchDescription.get_launch_arguments`.
+        self._conditionally_included = False
         if self.choices is not None and not self.choices:
             raise InvalidLaunchValueError(f"argument {name!r}: choices are empty")
+        if self.choices is not None:
+            self.description += f". Valid choices are: {self.choices}"
         if isinstance(default_value, str):
             self._check(default_value)
 
@@ -58,8 +63,8 @@ class DeclareLaunchArgument(Action):
         if self.name not in context.launch_configurations:
             if self.default_value is None:
                 raise InvalidLaunchValueError(
-                    f"argument {self.name!r} is required: give {self.name}:=value"
-                    + (f" ({self.description})" if self.description else "")
+                    f"Required launch argument {self.name!r} was not provided: give "
+                    f"{self.name}:=value ({self.description})"
                 )
             context.launch_configurations[self.name] = self.default_value.perform(
                 context
@@ -69,7 +74,7 @@ class DeclareLaunchArgument(Action):
     def _check(self, value: str) -> None:
         if self.choices is not None and value not in self.choices:
             raise InvalidLaunchValueError(
-                f"argument {self.name!r}: {value!r}; expected one of "
+                f"argument {self.name!r}: {value!r} is not in provided choices: "
                 f"{', '.join(self.choices)}"
             )
 
@@ -105,18 +110,21 @@ class PushLaunchConfigurations(Action):
     """Begins a scope of configurations."""
 
     def execute(self, context: LaunchContext) -> None:
-        context.push_launch_configurations()
+        context._push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
     """Ends a scope and restores the configurations."""
 
     def execute(self, context: LaunchContext) -> None:
-        context.pop_launch_configurations()
+        context._pop_launch_configurations()
 
 
 class ResetLaunchConfigurations(Action):
     """Replaces all configurations by the given ones."""
+
+    #: Declarations after it are not arguments of the launch file.
+    resets_arguments = True
 
     def __init__(
         self,

@@ -70,18 +70,18 @@ class PushEnvironment(Action):
     """Begins a scope of environment variables."""
 
     def execute(self, context: LaunchContext) -> None:
-        context.push_environment()
+        context._push_environment()
 
 
 class PopEnvironment(Action):
     """Ends a scope and restores the environment."""
 
     def execute(self, context: LaunchContext) -> None:
-        context.pop_environment()
+        context._pop_environment()
 
 
 class ResetEnvironment(Action):
     """Restores the environment of the launch's start."""
 
     def execute(self, context: LaunchContext) -> None:
-        context.reset_environment()
+        context._reset_environment()

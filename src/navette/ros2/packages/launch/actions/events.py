@@ -1,5 +1,6 @@
 """Actions that emit events, register handlers, and shut the launch down."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from navette.ros2.packages.launch.action import Action
@@ -30,8 +31,10 @@ class RegisterEventHandler(Action):
     def describe(self) -> str:
         return f"RegisterEventHandler({self.event_handler.describe()})"
 
-    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        return list(self.event_handler.entities)
+    def describe_conditional_sub_entities(
+        self,
+    ) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        return [(self.event_handler.describe(), list(self.event_handler.entities))]
 
     def execute(self, context: LaunchContext) -> None:
         context.register_event_handler(self.event_handler)
@@ -59,7 +62,7 @@ class EmitEvent(Action):
         return f"EmitEvent({self.event.name})"
 
     def execute(self, context: LaunchContext) -> None:
-        context.emit_event(self.event)
+        context.emit_event_sync(self.event)
 
 
 class Shutdown(Action):
@@ -77,4 +80,4 @@ class Shutdown(Action):
         if isinstance(event, ProcessExited) and not context.is_shutdown:
             name = event.process_name
             _log.info("process[%s] was required: shutting down launched system", name)
-        context.emit_event(ShutdownEvent(reason=reason))
+        context.emit_event_sync(ShutdownEvent(reason=reason))

@@ -17,13 +17,15 @@ from navette.ros2.packages.launch.events.process import (
     ProcessTargetedEvent,
     SignalProcess,
 )
+from navette.ros2.packages.launch.frontend.grammar import split_words
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
+    normalize_to_list_of_entities,
 )
 from navette.ros2.packages.launch.launched_process import LaunchedProcess
-from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.output import LabelledOutput, output_places
+from navette.ros2.packages.launch.logging import get_logger, output_places
+from navette.ros2.packages.launch.output import LabelledOutput
 from navette.ros2.packages.launch.running import LaunchCommand
 from navette.ros2.packages.launch.substitution import (
     Parts,
@@ -95,11 +97,11 @@ class ExecuteLocal(Action):
     def describe(self) -> str:
         return f"{type(self).__name__}({self.process_description.describe()})"
 
-    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         on_exit = self._on_exit
         if on_exit is None or callable(on_exit):
             return []
-        return OnProcessExit(on_exit=on_exit).entities
+        return normalize_to_list_of_entities(on_exit)
 
     @property
     def process_details(self) -> dict[str, Any] | None:
@@ -109,9 +111,11 @@ class ExecuteLocal(Action):
         return self._process.details
 
     @property
-    def name(self) -> str | None:
-        """Label (``talker-1``); None before the start."""
-        return None if self._process is None else self._process.label or None
+    def name(self) -> Any:
+        """Label (``talker-1``); before the start the given name, or None."""
+        if self._process is None:
+            return self.process_description.name
+        return self._process.label or None
 
     @property
     def return_code(self) -> int | None:
@@ -125,8 +129,9 @@ class ExecuteLocal(Action):
 
     def make_command(self, context: LaunchContext) -> LaunchCommand:
         """Return the command with all substitutions performed."""
+        self.process_description.prepare(context, self)
         return self.process_description.command(
-            context, shell=self.shell, tty=perform_bool(context, self.emulate_tty)
+            shell=self.shell, tty=perform_bool(context, self.emulate_tty)
         )
 
     def make_output(self, context: LaunchContext, label: str) -> LabelledOutput:
@@ -179,7 +184,7 @@ class ExecuteLocal(Action):
             get_logger("launch").info(
                 "process[%s] was required: shutting down launched system", self.name
             )
-            context.emit_event(ShutdownEvent(reason=f"{self.name} ended"))
+            context.emit_event_sync(ShutdownEvent(reason=f"{self.name} ended"))
 
     def _is_target(self, event: Event) -> bool:
         if isinstance(event, ProcessTargetedEvent):
@@ -228,6 +233,11 @@ class ExecuteProcess(ExecuteLocal):
             **kwargs,
         )
 
+    @staticmethod
+    def _parse_cmdline(cmd: str, parser: Any) -> list[Any]:
+        """Return the words of a command line, for extensions that parse tags."""
+        return [parser.parse_substitution(word) for word in split_words(cmd)]
+
     @property
     def cmd(self) -> list[Any]:
         return self.process_description.cmd
@@ -235,3 +245,11 @@ class ExecuteProcess(ExecuteLocal):
     @property
     def cwd(self) -> Any:
         return self.process_description.cwd
+
+    @property
+    def env(self) -> Any:
+        return self.process_description.env
+
+    @property
+    def additional_env(self) -> Any:
+        return self.process_description.additional_env

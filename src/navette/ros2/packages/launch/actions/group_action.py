@@ -47,7 +47,7 @@ class GroupAction(Action):
         self.forwarding = forwarding
         self.launch_configurations = dict(launch_configurations or {})
 
-    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+    def listed_entities(self) -> list[LaunchDescriptionEntity]:
         return list(self.actions)
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:

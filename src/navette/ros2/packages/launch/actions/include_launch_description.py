@@ -16,11 +16,12 @@ from navette.ros2.packages.launch.launch_description_entity import (
 from navette.ros2.packages.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
     LaunchDescriptionSource,
+    constant_text,
 )
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import Parts
 
-_LOCALS = ("current_launch_file_path", "current_launch_file_directory")
+_FILE, _FOLDER = "current_launch_file_path", "current_launch_file_directory"
 MAX_DEPTH = 50
 
 _log = get_logger("launch")
@@ -71,6 +72,12 @@ class IncludeLaunchDescription(Action):
         return self.source
 
     @property
+    def argument_names(self) -> list[str]:
+        """Names of the given arguments, as far as they are constant."""
+        texts = (constant_text(name) for name, _ in self.launch_arguments)
+        return [text for text in texts if text is not None]
+
+    @property
     def included_file(self) -> Path | None:
         """The file; None until it has been read."""
         return self.source.path
@@ -78,7 +85,7 @@ class IncludeLaunchDescription(Action):
     def describe(self) -> str:
         return f"IncludeLaunchDescription({self.source.location})"
 
-    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the description if it is available without running."""
         loaded = self.source.try_get_launch_description_without_context()
         return [] if loaded is None else [loaded]
@@ -89,56 +96,76 @@ class IncludeLaunchDescription(Action):
             (name.perform(context), value) for name, value in self.launch_arguments
         ]
         self._check(description, [name for name, _ in given], context)
-        depth = context.get_locals_as_dict().get("include depth", 0) + 1
-        if depth > MAX_DEPTH:
-            raise InvalidLaunchValueError(
-                f"includes nested deeper than {MAX_DEPTH}; check for a file that "
-                "includes itself"
-            )
-        path = self.source.path
+        leave = self._enter(context)
         return [
-            OpaqueFunction(function=_enter, args=[path, depth]),
             *(SetLaunchConfiguration(name, value) for name, value in given),
             description,
-            OpaqueFunction(function=_leave),
+            *leave,
         ]
+
+    def _enter(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """Set the launch file of the scope; return what restores that of the outer."""
+        outer = context.get_locals_as_dict()
+        leave: list[LaunchDescriptionEntity] = []
+        if _FILE in outer:
+            depth = outer.get("include depth", 0) + 1
+            if depth > MAX_DEPTH:
+                raise InvalidLaunchValueError(
+                    f"includes nested deeper than {MAX_DEPTH}; check for a file that "
+                    "includes itself"
+                )
+            context._push_locals()
+            context.extend_locals({"include depth": depth})
+            leave.append(OpaqueFunction(function=_leave))
+        if self.source.path is not None:
+            folder = str(self.source.path.parent)
+            context.extend_locals({_FILE: str(self.source.path), _FOLDER: folder})
+        elif _FILE not in outer:
+            place = self.source.location
+            context.extend_locals({_FILE: place, _FOLDER: place})
+        return leave
 
     def _check(
         self, description: LaunchDescription, given: list[str], context: LaunchContext
     ) -> None:
-        """Raise for missing arguments; warn of undeclared ones."""
-        declared = {each.name: each for each in description.get_launch_arguments()}
-        missing = [
-            each.name
-            for each in declared.values()
-            if each.default_value is None
-            and each.condition is None
-            and each.name not in given
-            and each.name not in context.launch_configurations
-        ]
+        """Raise for missing arguments; warn of undeclared ones.
+
+        As in ROS 2, an argument must be given by this include or by one inside that
+        leads to its declaration; arguments of the whole launch count for its own files.
+        """
+        declared = description.get_launch_arguments_with_includes()
+        names = {argument.name for argument, _ in declared}
+        of_launch = (
+            []
+            if _FILE in context.get_locals_as_dict()
+            else list(context.launch_configurations)
+        )
+        missing = []
+        for argument, includes in declared:
+            inside = [name for each in includes for name in each.argument_names]
+            is_optional = argument.default_value is not None
+            if not (
+                is_optional
+                or argument._conditionally_included
+                or argument.name in (*given, *of_launch, *inside)
+            ):
+                missing.append(argument.name)
         if missing:
             raise InvalidLaunchValueError(
-                f"{self.source.location} requires these arguments: {', '.join(missing)}"
+                f"Included launch description missing required argument "
+                f"{', '.join(map(repr, missing))}: {self.source.location} (given: "
+                f"{', '.join(given) or 'none'})"
             )
-        undeclared = sorted({name for name in given if name not in declared})
-        if undeclared and declared:
+        undeclared = sorted({name for name in given if name not in names})
+        if undeclared and names:
             _log.warning(
                 "%s: %s declares no argument %s; declared: %s",
                 self.origin,
                 self.source.location,
                 ", ".join(map(repr, undeclared)),
-                ", ".join(declared),
+                ", ".join(sorted(names)),
             )
 
 
-def _enter(context: LaunchContext, path: Any, depth: int) -> None:
-    context.push_locals()
-    context.extend_locals({"include depth": depth})
-    if path is not None:
-        context.extend_locals(
-            dict(zip(_LOCALS, (str(path), str(path.parent)), strict=True))
-        )
-
-
 def _leave(context: LaunchContext) -> None:
-    context.pop_locals()
+    context._pop_locals()

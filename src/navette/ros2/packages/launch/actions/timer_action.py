@@ -40,7 +40,7 @@ class TimerAction(Action):
         self._is_waiting = False
         self._context: LaunchContext | None = None
 
-    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         return list(self.actions)
 
     def execute(self, context: LaunchContext) -> None:
@@ -100,7 +100,7 @@ class _Scoped(LaunchDescriptionEntity):
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         context.extend_locals(self._local)
-        context.push_launch_configurations()
+        context._push_launch_configurations()
         context.launch_configurations.clear()
         context.launch_configurations.update(self._configurations)
         return [*self._entities, _EndOfScope()]
@@ -108,4 +108,4 @@ class _Scoped(LaunchDescriptionEntity):
 
 class _EndOfScope(LaunchDescriptionEntity):
     def visit(self, context: LaunchContext) -> None:
-        context.pop_launch_configurations()
+        context._pop_launch_configurations()

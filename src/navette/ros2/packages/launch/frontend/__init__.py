@@ -8,6 +8,7 @@ from navette.ros2.packages.launch.frontend.extending import (
 )
 from navette.ros2.packages.launch.frontend.grammar import (
     SUBSTITUTIONS,
+    parse_if_substitutions,
     parse_substitution,
 )
 from navette.ros2.packages.launch.frontend.parser import (
@@ -32,6 +33,7 @@ __all__ = [
     "makes",
     "parse_elements",
     "parse_launch_file",
+    "parse_if_substitutions",
     "parse_launch_text",
     "parse_substitution",
 ]

@@ -9,6 +9,7 @@ from navette.ros2.packages.launch.frontend.attribute_types import converted
 from navette.ros2.packages.launch.frontend.grammar import parse_substitution
 from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.typed import FALSE, TRUE
+from navette.ros2.packages.launch.utilities.type_utils import coerce_to_type
 
 
 @dataclass(eq=False)
@@ -83,6 +84,28 @@ class Element:
             return parse_substitution(text)
         except ValueError as error:
             raise self.error(str(error)) from None
+
+    def bool_or_parts(self, name: str) -> bool | Parts | None:
+        """Return a truth value, or substitutions that give one, or None."""
+        text = self.text(name)
+        if text is None or "$(" in text:
+            return self.parts(name)
+        try:
+            return bool(coerce_to_type(text.lower(), bool))
+        except ValueError as error:
+            raise self.error(f"attribute {name!r}: {error}") from None
+
+    def number_or_parts(self, name: str) -> float | Parts:
+        """Return a required number, or substitutions that give one."""
+        text = self.need(name)
+        if "$(" in text:
+            return self.parse(text)
+        try:
+            return float(text)
+        except ValueError:
+            raise self.error(
+                f"attribute {name!r}: {text!r}; expected a number"
+            ) from None
 
     def flag(self, name: str) -> bool | None:
         """Return a constant boolean attribute, or None."""
@@ -161,12 +184,13 @@ class Element:
         known = sorted(name for name in self._seen if name[0] != "<")
         if unread:
             raise self.error(
-                f"unknown attribute {unread[0]!r}; known: {', '.join(known)}"
+                f"unknown attribute {unread[0]!r} of `{self.tag}`; known: "
+                f"{', '.join(known)}"
             )
         for child in self.children:
             if not self._all_seen and f"<{child.tag}>" not in self._seen:
                 inside = sorted(name for name in self._seen if name[0] == "<")
                 raise child.error(
-                    f"not allowed in <{self.tag}>; allowed: "
+                    f"not allowed in `{self.tag}`; allowed: "
                     f"{', '.join(inside) or 'nothing'}"
                 )

@@ -1,7 +1,7 @@
 """ROS 2's interface for tags and substitutions of other packages, and its parser."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, TextIO, TypeVar
@@ -11,6 +11,7 @@ from navette.ros2.packages.launch.errors import InvalidLaunchFileError
 from navette.ros2.packages.launch.frontend.element import Element
 from navette.ros2.packages.launch.frontend.grammar import (
     SUBSTITUTIONS,
+    parse_if_substitutions,
     parse_substitution,
 )
 from navette.ros2.packages.launch.frontend.parser import (
@@ -140,11 +141,7 @@ class Parser:
 
     def parse_if_substitutions(self, value: Any) -> Any:
         """Return a value whose texts with ``$(…)`` are substitutions."""
-        if isinstance(value, str):
-            return parse_substitution(value)
-        if isinstance(value, Sequence):
-            return [self.parse_if_substitutions(each) for each in value]
-        return value
+        return parse_if_substitutions(value)
 
     def escape_characters(self, value: str) -> str:
         """Return a text without the backslashes that escape characters."""

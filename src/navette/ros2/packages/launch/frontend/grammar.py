@@ -5,6 +5,7 @@ escapes the next character.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.ros2.packages.launch.substitution import (
@@ -31,6 +32,9 @@ from navette.ros2.packages.launch.substitutions import (
     PythonExpression,
     ThisLaunchFile,
     ThisLaunchFileDir,
+)
+from navette.ros2.packages.launch.utilities.type_utils import (
+    is_instance_of_valid_type,
 )
 
 MAX_DEPTH = 32
@@ -87,6 +91,52 @@ def parse_substitution(text: str) -> Parts:
     return parts or Parts([TextSubstitution(text="")])
 
 
+def split_words(text: str) -> list[str]:
+    """Split a command line at spaces, except within ``$(…)`` and quotes."""
+    words: list[str] = [""]
+    depth, quote = 0, ""
+    for position, character in enumerate(text):
+        if quote:
+            quote = "" if character == quote else quote
+        elif character in "'\"":
+            quote = character
+        elif text.startswith("$(", position):
+            depth += 1
+        elif character == ")" and depth:
+            depth -= 1
+        elif character.isspace() and not depth:
+            words.append("")
+            continue
+        words[-1] += character
+    return [_unquoted(word) for word in words if word]
+
+
+def _unquoted(word: str) -> str:
+    """Remove the quotes around a word, not those within ``$(…)``."""
+    if len(word) > 1 and word[0] == word[-1] and word[0] in "'\"":
+        return word[1:-1]
+    return word
+
+
+def parse_if_substitutions(value: Any) -> Any:
+    """Return a value whose texts with ``$(…)`` are substitutions.
+
+    Raises:
+        ValueError: a list of values of several types.
+    """
+    if isinstance(value, str):
+        parts = parse_substitution(value)
+        texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
+        return "".join(texts) if len(texts) == len(parts) else parts
+    if isinstance(value, (list, tuple)):
+        found = [parse_if_substitutions(each) for each in value]
+        plain = [each for each in found if not isinstance(each, Parts)]
+        if not is_instance_of_valid_type(plain):
+            raise ValueError(f"{value!r}: expected values of one type")
+        return found
+    return value
+
+
 class _Reader:
     """Recursive descent parser."""
 
@@ -94,6 +144,7 @@ class _Reader:
         self.text = text
         self.position = 0
         self._depth = 0
+        self._is_quoted = False
 
     def read(self, ends: str) -> Parts:
         """Parse up to, not including, one of the end characters."""
@@ -109,7 +160,7 @@ class _Reader:
                 plain = ""
                 parts.append(self._substitution())
                 continue
-            if character == "\\" and self._peek(1) in "$'\"\\" and self._peek(1):
+            if character == "\\" and self._peek(1) in "$'\"\\()" and self._peek(1):
                 self.position += 1
                 character = self.text[self.position]
             plain += character
@@ -152,10 +203,13 @@ class _Reader:
             arguments.append(self._argument(character))
 
     def _argument(self, character: str) -> Parts:
-        if character not in "'\"":
+        # As in ROS 2, quotes within a quoted argument are text.
+        if character not in "'\"" or self._is_quoted:
             return self.read(_SPACE + ")")
         self.position += 1
+        self._is_quoted = True
         parts = self.read(character)
+        self._is_quoted = False
         if self._peek(0) != character:
             raise InvalidValueError(
                 f"{self.text!r}: the closing {character} is missing"

@@ -1,6 +1,8 @@
 """Substitutions of launch configurations, environment, scope and launch file."""
 
 import os
+import re
+import socket
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -63,7 +65,7 @@ class EnvironmentVariable(Substitution):
             return value
         if self.default_value is None:
             raise SubstitutionFailure(
-                f"environment variable {name!r} is not set and has no default"
+                f"environment variable {name!r} does not exist and has no default"
             )
         return self.default_value.perform(context)
 
@@ -104,7 +106,8 @@ class ThisLaunchFileDir(Substitution):
     """Folder of the launch file (``$(dirname)``)."""
 
     def perform(self, context: LaunchContext) -> str:
-        return str(_launch_file(context).parent)
+        folder = context.get_locals_as_dict().get("current_launch_file_directory")
+        return str(_launch_file(context).parent) if folder is None else str(folder)
 
 
 def _launch_file(context: LaunchContext) -> Path:
@@ -133,4 +136,9 @@ class AnonName(Substitution):
     def perform(self, context: LaunchContext) -> str:
         base = self.name.perform(context)
         given: dict[str, str] = context.notes.setdefault("anonymous names", {})
-        return given.setdefault(base, f"{base}_{os.getpid()}_{len(given)}")
+        name = f"{base}_{_host()}_{os.getpid()}_{len(given)}"
+        return given.setdefault(base, name)
+
+
+def _host() -> str:
+    return re.sub(r"\W", "_", socket.gethostname())

@@ -58,6 +58,8 @@ class FileContent(Substitution):
             if path.stat().st_size > _MAX_BYTES:
                 raise SubstitutionFailure(f"{path}: more than {_MAX_BYTES} bytes")
             return path.read_text(encoding="utf-8")
+        except FileNotFoundError as error:
+            raise SubstitutionFailure(f"File not found: {path}") from error
         except (OSError, UnicodeDecodeError) as error:
             raise SubstitutionFailure(f"{path}: cannot be read: {error}") from error
 
@@ -106,16 +108,19 @@ class Command(Substitution):
             done = subprocess.run(
                 shlex.split(text), capture_output=True, text=True, check=False
             )
+        except FileNotFoundError as error:
+            raise SubstitutionFailure(f"file not found: command {text!r}") from error
         except (OSError, ValueError) as error:
             raise SubstitutionFailure(f"command {text!r}: {error}") from error
         if done.returncode != 0:
             raise SubstitutionFailure(
-                f"command {text!r} failed with code {done.returncode}: "
+                f"executed command failed. Command: {text}; code {done.returncode}: "
                 f"{done.stderr.strip()}"
             )
         if done.stderr and mode == "fail":
             raise SubstitutionFailure(
-                f"command {text!r} wrote to standard error: {done.stderr.strip()}"
+                f"executed command showed stderr output. Command: {text}\n"
+                f"{done.stderr.strip()}"
             )
         if done.stderr and mode == "warn":
             get_logger("launch").warning("command %r: %s", text, done.stderr.strip())

@@ -16,7 +16,7 @@ from navette.ros2.packages.launch.substitution import (
     Substitution,
     perform_substitutions,
 )
-from navette.ros2.packages.launch.typed import parse_bool
+from navette.ros2.packages.launch.typed import parse_bool, perform_bool
 
 
 def _word(value: bool) -> str:
@@ -46,16 +46,12 @@ class AnySubstitution(Substitution):
     _combine: Any = staticmethod(any)
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
-        if not args:
-            raise InvalidLaunchValueError(
-                f"{type(self).__name__}: expected at least one value"
-            )
         self.values = [Parts.of(value) for value in args]
 
     def perform(self, context: LaunchContext) -> str:
-        return _word(
-            self._combine(_is_true(context, v, self.describe()) for v in self.values)
-        )
+        # A list: an invalid value is an error, wherever it is.
+        values = [_is_true(context, v, self.describe()) for v in self.values]
+        return _word(self._combine(values))
 
     def describe(self) -> str:
         listed = ", ".join(part.describe() for part in self.values)
@@ -100,7 +96,7 @@ class EqualsSubstitution(Substitution):
         left = self.left.perform(context)
         right = self.right.perform(context)
         if left == right:
-            return True
+            return left.lower() != "nan"
         words = {left.lower(), right.lower()}
         if words in ({"true", "1"}, {"false", "0"}) or words in ({"true"}, {"false"}):
             return True
@@ -151,7 +147,10 @@ class IfElseSubstitution(Substitution):
         self.else_value = Parts.of(else_value)
 
     def perform(self, context: LaunchContext) -> str:
-        holds = _is_true(context, self.condition, self.describe())
+        try:
+            holds = perform_bool(context, self.condition)
+        except InvalidConditionExpressionError as error:
+            raise SubstitutionFailure(f"{self.describe()}: {error}") from None
         return perform_substitutions(
             context, self.if_value if holds else self.else_value
         )

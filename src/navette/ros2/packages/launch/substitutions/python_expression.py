@@ -1,6 +1,13 @@
 """Substitution of a Python expression."""
 
-from navette.msgs.expressions import ExpressionError, evaluate
+from importlib import import_module
+
+from navette.msgs.expressions import (
+    Expression,
+    ExpressionError,
+    ModuleNames,
+    UnknownExpressionNameError,
+)
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
@@ -9,8 +16,11 @@ from navette.ros2.packages.launch.substitution import (
     Substitution,
 )
 
-_MODULES = ("math",)
 _HINT = "for more than an expression, use OpaqueFunction in a Python launch file"
+
+
+class UnknownVariableError(SubstitutionFailure, NameError):
+    """An expression contains a name that it does not have."""
 
 
 class PythonExpression(Substitution):
@@ -20,7 +30,8 @@ class PythonExpression(Substitution):
 
     Args:
         expression: parts of the expression.
-        python_modules: modules that it uses; only ``math`` is available.
+        python_modules: modules that it uses, by default ``math``; in one text, they are
+            separated by commas.
     """
 
     def __init__(
@@ -34,16 +45,24 @@ class PythonExpression(Substitution):
         )
         self.python_modules = Parts.of(modules)
 
+    def describe(self) -> str:
+        modules = ", ".join(part.describe() for part in self.python_modules)
+        return f"PythonExpr({self.expression.describe()}, [{modules}])"
+
     def perform(self, context: LaunchContext) -> str:
-        for part in self.python_modules:
-            module = part.perform(context)
-            if module not in _MODULES:
-                raise SubstitutionFailure(
-                    f"PythonExpression: module {module!r} is not available in "
-                    f"expressions; available: {', '.join(_MODULES)}"
-                )
+        given = ",".join(part.perform(context) for part in self.python_modules)
+        modules = {}
+        for name in filter(None, (word.strip() for word in given.split(","))):
+            try:
+                modules[name] = ModuleNames(import_module(name))
+            except ImportError as error:
+                raise SubstitutionFailure(f"{self.describe()}: {error}") from error
+        has_math = modules.pop("math", None) is not None  # the bounded functions
         try:
             text = self.expression.perform(context)
-            return str(evaluate(text, _HINT))
+            expression = Expression(text, names=modules, hint=_HINT, with_math=has_math)
+            return str(expression.value(modules))
+        except UnknownExpressionNameError as error:
+            raise UnknownVariableError(str(error)) from None
         except ExpressionError as error:
             raise SubstitutionFailure(str(error)) from None

@@ -57,7 +57,7 @@ class LifecycleNode(Node):
         launch_node(context).subscribe(
             TransitionEvent,
             f"{self.node_name}/transition_event",
-            lambda msg: context.emit_event(StateTransition(action=self, msg=msg)),
+            lambda msg: context.emit_event_sync(StateTransition(action=self, msg=msg)),
         )
         context.register_event_handler(
             CallbackHandler(matcher=self._is_transition_request, callback=self._change)

@@ -84,7 +84,7 @@ class _TransitionSequence:
             handle_once=True,
         )
         self._context.register_event_handler(self._handler)
-        self._context.emit_event(
+        self._context.emit_event_sync(
             ChangeState(lifecycle_node_matcher=self._matches, transition_id=number)
         )
 

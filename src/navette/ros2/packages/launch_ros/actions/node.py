@@ -1,6 +1,7 @@
 """Action that starts the program of a node."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -93,27 +94,20 @@ class Node(ExecuteProcess):
 
     def make_command(self, context: LaunchContext) -> LaunchCommand:
         program = self._find(context)
-        description = self.process_description
         executable = self._executable.perform(context)
-        name = (
-            description.name.perform(context)
-            if description.name is not None
-            else Path(executable).stem
+        first = str(program) if isinstance(program, Path) else executable
+        description = self.process_description
+        description.set_final(
+            context, [first, *self._words(context)], Path(executable).stem
         )
-        prefix = description.prefix_words(context)
-        cwd = description.working_folder(context)
-        env = description.environment(context)
-        is_path = isinstance(program, Path)
-        return LaunchCommand(
-            label=context.unique_name(name),
-            argv=(str(program) if is_path else executable, *self._words(context)),
-            prefix=tuple(prefix),
-            cwd=cwd,
-            env=env,
-            shell=self.shell,
-            tty=perform_bool(context, self.emulate_tty),
-            program=None if isinstance(program, Path) else program,
-            own_process=bool(prefix or cwd or env is not None or self.shell),
+        command = description.command(
+            shell=self.shell, tty=perform_bool(context, self.emulate_tty)
+        )
+        if isinstance(program, Path):
+            return command
+        needs_process = command.prefix or command.cwd or command.env is not None
+        return replace(
+            command, program=program, own_process=bool(needs_process or self.shell)
         )
 
     def _find(self, context: LaunchContext) -> PythonProgram | Path:

@@ -1,0 +1,156 @@
+"""Run the test suites of ROS 2's Python packages, unmodified, on Navette.
+
+    python tests/conformance/upstream.py FOLDER… [--suite NAME] [--failures FILE]
+
+Each FOLDER is a checkout of ros2/launch, ros2/launch_ros, ros2/message_filters or
+ros2/rosidl_runtime_py (branch jazzy); the suites import osrf-pycommon from PyPI. Prints
+a line for each suite: tests that pass, tests that fail for a reason listed in
+``upstream_failures.toml``, and others. Exits with 1 where a test fails without a listed
+reason, or passes although it is listed. None of the suites is part of this repository.
+"""
+
+# ruff: noqa: T201 - it prints a report
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
+
+REASONS = Path(__file__).with_name("upstream_failures.toml")
+#: Suite → its folder below a checkout. The linters' own tests are left out.
+SUITES = {
+    "launch": "launch/test/launch",
+    "launch_xml": "launch_xml/test/launch_xml",
+    "launch_yaml": "launch_yaml/test/launch_yaml",
+    "launch_testing": "launch_testing/test/launch_testing",
+    "launch_pytest": "launch_pytest/test/launch_pytest",
+    "launch_ros": "test_launch_ros/test/test_launch_ros",
+    "message_filters": "test",
+    "rosidl_runtime_py": "test/rosidl_runtime_py",
+}
+LINTERS = ("copyright", "flake8", "pep257", "mypy", "xmllint")
+#: Seconds a test may take, and a suite.
+TEST_TIMEOUT_S, SUITE_TIMEOUT_S = 60, 900
+
+
+@dataclass
+class Outcome:
+    """Tests of a suite by what happened."""
+
+    passed: list[str] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def total(self) -> int:
+        return len(self.passed) + len(self.failed)
+
+
+def find_suites(folders: list[Path]) -> dict[str, Path]:
+    """Return the suites in the checkouts, by name."""
+    found = {}
+    for folder in folders:
+        for name, below in SUITES.items():
+            if (folder / below).is_dir() and _contains(folder, name):
+                found[name] = folder / below
+    return found
+
+
+def _contains(folder: Path, package: str) -> bool:
+    """Whether a checkout is a package or holds it in a folder of its name."""
+    manifest = folder / "package.xml"
+    if not manifest.is_file():
+        return (folder / package).is_dir()
+    return ElementTree.parse(manifest).findtext("name") == package
+
+
+def run_suite(folder: Path) -> Outcome:
+    """Run the tests of one folder in a pytest of their own."""
+    with tempfile.TemporaryDirectory(prefix="navette_upstream_") as scratch:
+        report = Path(scratch) / "report.xml"
+        command = [
+            *(sys.executable, "-m", "pytest", str(folder), f"--junitxml={report}"),
+            *("-p", "navette.ros2.names.pytest_plugin", "-p", "no:cacheprovider"),
+            *("-p", "pytester", "-p", "no:xdist"),
+            *("--noconftest", "-o", "addopts=", "-q", "--tb=short"),
+            *("--continue-on-collection-errors", f"--timeout={TEST_TIMEOUT_S}"),
+            f"--rootdir={folder}",
+            *(f"--ignore-glob=*test_{linter}.py" for linter in LINTERS),
+        ]
+        subprocess.run(
+            command,
+            cwd=folder,
+            env=os.environ
+            | {
+                "PYTHONPATH": str(folder.parent),  # modules that tests share
+                "PYTHONDONTWRITEBYTECODE": "1",
+                "ROS_LOG_DIR": scratch,
+            },
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            timeout=SUITE_TIMEOUT_S,
+            check=False,
+        )
+        return _read_report(report)
+
+
+def _read_report(report: Path) -> Outcome:
+    outcome = Outcome()
+    for case in ElementTree.parse(report).iter("testcase"):
+        name = "::".join(filter(None, [case.get("classname"), case.get("name")]))
+        problem = next((e for e in case if e.tag in ("failure", "error")), None)
+        if problem is not None:
+            outcome.failed[name] = f"{problem.get('message')}\n{problem.text}"
+        elif case.find("skipped") is None:
+            outcome.passed.append(name)
+    return outcome
+
+
+def report_suite(name: str, outcome: Outcome, reasons: dict[str, str]) -> list[str]:
+    """Print a suite's line and return what differs from the list of reasons."""
+    listed = [test for test in outcome.failed if test in reasons]
+    unlisted = [test for test in outcome.failed if test not in reasons]
+    repaired = [test for test in outcome.passed if test in reasons]
+    share = 100 * len(outcome.passed) / max(outcome.total, 1)
+    print(
+        f"{name}: {len(outcome.passed)} of {outcome.total} pass ({share:.0f} %), "
+        f"{len(listed)} fail for a listed reason, {len(unlisted)} without"
+    )
+    return [
+        *(f"{name}: {test} fails without a listed reason" for test in unlisted),
+        *(f"{name}: {test} passes; delete its reason" for test in repaired),
+    ]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER")
+    parser.add_argument("--suite", choices=SUITES, action="append", metavar="NAME")
+    parser.add_argument(
+        "--failures", type=Path, metavar="FILE", help="write tracebacks"
+    )
+    options = parser.parse_args()
+    reasons = tomllib.loads(REASONS.read_text(encoding="utf-8"))
+    suites = find_suites([folder.resolve() for folder in options.folders])
+    if not suites:
+        parser.error(f"no suite in {', '.join(map(str, options.folders))}")
+    differences, tracebacks = [], []
+    for name, folder in suites.items():
+        if options.suite and name not in options.suite:
+            continue
+        outcome = run_suite(folder)
+        differences += report_suite(name, outcome, reasons.get(name, {}))
+        tracebacks += [f"=== {test}\n{text}" for test, text in outcome.failed.items()]
+    if options.failures:
+        options.failures.write_text("\n".join(tracebacks), encoding="utf-8")
+    print(*differences, sep="\n")
+    return 1 if differences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
