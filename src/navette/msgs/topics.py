@@ -68,6 +68,7 @@ LOCAL_COSTMAP = StackTopic(
 LOCAL_FOOTPRINT = StackTopic(
     "/local_costmap/published_footprint", "geometry_msgs/msg/PolygonStamped", 1
 )
+TRAJECTORIES = StackTopic("/trajectories", "visualization_msgs/msg/MarkerArray", 1)
 GLOBAL_COSTMAP = StackTopic(
     "/global_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
 )

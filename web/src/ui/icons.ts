@@ -18,7 +18,7 @@ const PATHS: Record<string, string> = {
   frames: "M4 12V4M4 12h8M4 12l5-5M2.5 5.5 4 4l1.5 1.5M10.5 10.5 12 12l-1.5 1.5",
   displays: "M8 2.5 14 6 8 9.5 2 6zM2.5 9 8 12.3 13.5 9",
   report: "M4 2.5h5.5l3 3v8H4zM6.5 8h4M6.5 10.5h4M9.5 2.5v3h3",
-  nodes: "M8 3.5v3M8 9.5v3M3.5 8h3M9.5 8h3M8 8h.1",
+  nodes: "M2.5 3h4.5v4H2.5zM9 3h4.5v4H9zM2.5 9h4.5v4H2.5zM9 9h4.5v4H9z",
   goal: "M8 14s4.5-4.2 4.5-7.5a4.5 4.5 0 0 0-9 0C3.5 9.8 8 14 8 14zM8 6.6v.1",
   pose: "M3 13 13 3M7.5 3H13v5.5",
   waypoints: "M4 12.2a1.3 1.3 0 1 0 0-.1M10.5 4.2a1.3 1.3 0 1 0 0-.1M5 11 11 5.2",

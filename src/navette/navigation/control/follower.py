@@ -20,6 +20,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
     FollowerInputs,
     FollowerOutput,
+    Rollouts,
 )
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.navigation.grids import NO_DISCS, NONE_UNSEEN, CollisionCheck
@@ -72,6 +73,10 @@ class Follower(Protocol):
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
         """Return the command for the next ``dt`` seconds."""
+
+    def rollouts(self, most: int) -> Rollouts | None:
+        """Return up to ``most`` motions that the last step compared; None: none."""
+        return None
 
 
 class TrackingErrors(NamedTuple):

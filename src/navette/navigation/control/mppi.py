@@ -30,6 +30,7 @@ from navette.navigation.control.drive_models import (
 from navette.navigation.control.limits import NO_CAP, SpeedCap, VelocityCommand
 from navette.navigation.control.moving_obstacles import add_moving_costs
 from navette.navigation.control.params import ControlParams
+from navette.navigation.control.records import Rollouts
 from navette.navigation.control.rollouts import (
     CostWeights,
     LocalField,
@@ -169,6 +170,28 @@ class Mppi:
             )
         self._average(candidates)
         return self._first_command()
+
+    def rollouts(self, state: MotionState, most: int) -> Rollouts:
+        """Return the motions of the last step from ``state``: the cheapest, and others.
+
+        The others are spread evenly over the samples and manoeuvres.
+        """
+        count = len(self._costs)
+        chosen = np.linspace(0, count - 1, min(most, count), dtype=np.intp)
+        chosen[0] = self._costs.argmin()
+        chosen = chosen[np.argsort(self._costs[chosen], kind="stable")]
+        commands = self._candidates[:, :, chosen].astype(np.float64)
+        forward, turn = commands[:, 0], commands[:, -1]
+        side = commands[:, 1] if self._drive == OMNI else np.zeros_like(forward)
+        if self._drive == ACKERMANN:
+            turn = forward * turn
+        yaw = state.yaw + self._step_s * (np.cumsum(turn, axis=0) - turn / 2)
+        dx = forward * np.cos(yaw) - side * np.sin(yaw)
+        dy = forward * np.sin(yaw) + side * np.cos(yaw)
+        ways = self._step_s * np.cumsum(np.stack([dx, dy], axis=-1), axis=0)
+        positions = np.concatenate([np.zeros((1, len(chosen), 2)), ways])
+        positions += (state.x, state.y)
+        return Rollouts(positions.swapaxes(0, 1), self._costs[chosen].astype(float))
 
     def alternatives(self) -> Iterator[VelocityCommand]:
         """Yield the first commands of candidates that cost less than standing still.

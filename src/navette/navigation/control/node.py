@@ -113,6 +113,11 @@ class ControlNode(MotionNode):
             "the robot's outline on the map, only while it is subscribed to",
             rate_hz=20.0,
         ),
+        Output.of(
+            topics.TRAJECTORIES,
+            "motions that MPPI compares, only while it is subscribed to",
+            rate_hz=5.0,
+        ),
     )
 
     params: ControlParams
@@ -327,6 +332,7 @@ class ControlNode(MotionNode):
         self._send(output)
         self._reports.state(output)
         self._reports.collision(output)
+        self._reports.publish_rollouts(self._follower.rollouts)
         fresh = inputs.ages.odometry_s <= inputs.ages.odometry_timeout_s
         self._follow_server.step(output, inputs, fresh=fresh)
 

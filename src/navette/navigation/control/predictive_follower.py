@@ -32,6 +32,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
     FollowerInputs,
     FollowerOutput,
+    Rollouts,
     check_poses,
 )
 from navette.navigation.control.rollouts import (
@@ -97,6 +98,7 @@ class PredictiveFollower(BaseFollower):
         self._at = 0
         self._last_turn: TurnInPlace | None = None
         self._cross_track = self._heading_error = 0.0
+        self._sampled_at: MotionState | None = None  # of the last step
         self._mode.mppi.reset()
 
     @property
@@ -147,6 +149,7 @@ class PredictiveFollower(BaseFollower):
         )
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
+        self._sampled_at = None
         stopped = self._at_rest(inputs)
         if stopped is not None:
             return stopped
@@ -171,8 +174,9 @@ class PredictiveFollower(BaseFollower):
         ahead = advanced(
             inputs.pose, last.speed, last.turn_rate, _DELAY_S, side=last.side
         )
+        self._sampled_at = MotionState(*ahead, *last)
         wanted = self._mode.mppi.step(
-            MotionState(*ahead, *last),
+            self._sampled_at,
             self._near(self._path),
             self._field,
             dt,
@@ -184,6 +188,11 @@ class PredictiveFollower(BaseFollower):
         if output.state == ControlState.BLOCKED and last == STOP:
             return self._free_start(inputs, dt) or output
         return output
+
+    def rollouts(self, most: int) -> Rollouts | None:
+        if self._sampled_at is None:
+            return None
+        return self._mode.mppi.rollouts(self._sampled_at, most)
 
     def _free_start(self, inputs: FollowerInputs, dt: float) -> FollowerOutput | None:
         """Start with the cheapest candidate that the obstacles allow; None: stand.

@@ -69,6 +69,16 @@ class FollowerOutput(NamedTuple):
     limited_by: LimitedBy = LimitedBy.NONE
 
 
+class Rollouts(NamedTuple):
+    """Motions that a controller compared: positions (K, T, 2) in the map, cost (K,).
+
+    The cheapest comes first.
+    """
+
+    positions: NDArray[np.float64]
+    costs: NDArray[np.float64]
+
+
 PAUSED = FollowerOutput(
     VelocityCommand(0.0, 0.0),
     ControlState.PAUSED,

@@ -232,3 +232,21 @@ def test_the_path_is_kept_while_another_source_commands(world: World) -> None:
     commander("operator", "/cmd_vel_nav")
     world.graph.run_for(1.0)
     assert world.state == "reached", "nothing to pause"
+
+
+def test_rollouts_are_published_while_subscribed_to(graph: GraphHarness) -> None:
+    world = World(graph, method="mppi")
+    path = tangent_path(np.array([[0, 0], [6, 0.0]]))
+    graph.run_for(1.0)
+    world.send_path(path)
+    graph.run_for(1.0)
+    shown = graph.collect("/trajectories", "visualization_msgs/msg/MarkerArray")
+    graph.run_for(2.0)
+    assert 8 <= len(shown.messages) <= 12, "five a second"
+    first, *lines = shown.last.markers
+    assert first.action == first.DELETEALL
+    assert len(lines) == 48
+    assert all(len(line.points) > 5 for line in lines)
+    world.send_path(np.empty((0, 3)))
+    graph.run_for(1.0)
+    assert len(shown.last.markers) == 1, "the lines are removed"

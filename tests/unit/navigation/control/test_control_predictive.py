@@ -176,3 +176,34 @@ def test_a_robot_at_rest_close_to_a_post_drives_on(
     result = run(robot, Plant(Pose2(0.0, 0.0, 0.0)), 12.0)
     assert result.final.state == "reached"
     assert min(o.clearance_m for o in result.outputs) > 0.02
+
+
+def test_rollouts_begin_at_the_robot_and_the_cheapest_follows_the_path() -> None:
+    path = tangent_path(PATHS["straight"])
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    assert robot.rollouts(10) is None, "no step yet"
+    robot.set_path(path)
+    run(robot, plant, 3.0)
+    found = robot.rollouts(12)
+    assert found is not None
+    assert len(found.costs) == 12
+    assert (np.diff(found.costs) >= 0).all()
+    begin = found.positions[:, 0]
+    assert np.hypot(begin[:, 0] - plant.pose.x, begin[:, 1] - plant.pose.y).max() < 0.3
+    lengths = np.hypot(*np.diff(found.positions, axis=1).T).sum(axis=0)
+    params = big_robot(method="mppi")
+    horizon_s = params.mppi_steps * params.mppi_step_s
+    assert lengths.max() <= params.cruise_speed_mps * horizon_s + 1e-6
+    best = found.positions[0]
+    assert best[-1, 0] > best[0, 0] + 0.5
+    assert np.abs(best[:, 1]).max() < 0.3
+
+
+def test_without_a_path_there_are_no_rollouts() -> None:
+    path = tangent_path(PATHS["straight"])
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.set_path(path)
+    run(robot, plant, 1.0)
+    robot.set_path(np.empty((0, 3)))
+    run(robot, plant, 0.2)
+    assert robot.rollouts(5) is None

@@ -8,14 +8,17 @@ from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState
+from navette.msgs.std_msgs.msg import Header
 from navette.navigation.control.explanations import EXPLAINED, Situation, explain
-from navette.navigation.control.records import FollowerOutput
+from navette.navigation.control.records import FollowerOutput, Rollouts
+from navette.navigation.control.servers.rollout_markers import rollout_markers
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.stage.status import StatusReporter
 from navette.runtime.time import ns_to_stamp
 
 _STEPS_PER_REPORT = 5
+_ROLLOUTS, _ROLLOUTS_PERIOD_NS = 48, 200_000_000
 # A stop that ends by itself, as before the first costmap, needs no explanation.
 _EXPLAIN_AFTER_NS = 1_000_000_000
 _EXPLAIN_PERIOD_NS = 60_000_000_000
@@ -44,6 +47,7 @@ class ControlReports:
         self._stopped_in, self._stopped_ns = ControlState.IDLE, 0
         self._explained_ns: dict[ControlState, int] = {}
         self._action = CollisionMonitorState.DO_NOTHING
+        self._rollouts_ns, self._has_rollouts = -_ROLLOUTS_PERIOD_NS, False
 
     def state(self, output: FollowerOutput) -> None:
         """Publish the state at once when it changes, and every few steps."""
@@ -92,6 +96,21 @@ class ControlReports:
             Point32(x=x, y=y) for x, y in pose.apply(corners).tolist()
         ]
         node.publish(topics.LOCAL_FOOTPRINT.name, message)
+
+    def publish_rollouts(self, rollouts: Callable[[int], Rollouts | None]) -> None:
+        """Publish the motions that were compared, now and then, while subscribed to."""
+        node = self._node
+        now_ns = node.get_clock().now_ns
+        is_due = not 0 <= now_ns - self._rollouts_ns < _ROLLOUTS_PERIOD_NS
+        if not is_due or not node.has_listeners(topics.TRAJECTORIES.name):
+            return
+        self._rollouts_ns = now_ns
+        found = rollouts(_ROLLOUTS)
+        if found is not None or self._has_rollouts:
+            header = Header(frame_id=node.params.map_frame, stamp=ns_to_stamp(now_ns))
+            message = rollout_markers(found, header)
+            node.publish(topics.TRAJECTORIES.name, message)
+        self._has_rollouts = found is not None
 
     def _explain(self, state: ControlState) -> None:
         """Log why the robot stays stopped, once a minute for each state."""
