@@ -25,8 +25,10 @@ from numba import types
 from numba.core import compiler, serialize, sigutils
 from numba.core.caching import NullCache
 from numba.core.dispatcher import Dispatcher
+from numba.core.runtime.nrt import rtsys
 
 from navette.files.folders import cache_folder, is_private
+from navette.files.kernel_archive import package_archive
 
 VARIABLE = "NUMBA_CACHE_DIR"
 _SUFFIX = ".kernel"
@@ -90,26 +92,41 @@ class KernelCache(NullCache):
         return None if folder is None else str(folder)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
+        # Numba's own cache refreshes the context here, which imports what it compiles
+        # with. Machine code requires only the symbols of the runtime.
+        initialize: Any = rtsys.initialize
+        initialize(target_context)
+        for read in (self._read_packaged, self._read_stored):
+            data = read(sig, target_context)
+            if data is None:
+                continue
+            try:
+                rebuild: Any = compiler.CompileResult._rebuild
+                return rebuild(target_context, *pickle.loads(data))
+            except Exception as error:  # unpickling raises whatever a class raises
+                _log.debug("%s: %r; compiling", self._function.__name__, error)
+        return None
+
+    def _read_packaged(self, sig: Any, target_context: Any) -> bytes | None:
+        archive = package_archive()
+        if archive is None:
+            return None
+        triple = target_context.codegen().magic_tuple()[0]
+        processor = (triple, archive.processor.name, "")
+        return archive.read(self._file_name(sig, processor))
+
+    def _read_stored(self, sig: Any, target_context: Any) -> bytes | None:
         folder = _folder()
         if folder is None:
             return None
-        target_context.refresh()
-        path = folder / self._file_name(sig, target_context.codegen())
-        data = _read(path)
-        if data is None:
-            return None
-        try:
-            rebuild: Any = compiler.CompileResult._rebuild
-            return rebuild(target_context, *pickle.loads(data))
-        except Exception as error:  # unpickling raises whatever a class raises
-            _log.debug("%s: %r; compiling again", path, error)
-            return None
+        processor = target_context.codegen().magic_tuple()
+        return read_kernel(folder / self._file_name(sig, processor))
 
     def save_overload(self, sig: Any, data: Any) -> None:
         folder = _folder()
         if folder is None or data.library.has_dynamic_globals:
             return
-        path = folder / self._file_name(sig, data.codegen)
+        path = folder / self._file_name(sig, data.codegen.magic_tuple())
         try:
             dumps: Any = serialize.dumps
             _write(path, dumps(data._reduce()))
@@ -117,14 +134,14 @@ class KernelCache(NullCache):
         except OSError as error:
             _log_once(f"cannot store compiled kernels in {folder}: {error.strerror}")
 
-    def _file_name(self, sig: Any, codegen: Any) -> str:
+    def _file_name(self, sig: Any, processor: tuple[str, ...]) -> str:
         normalize: Any = sigutils.normalize_signature
         arguments, _ = normalize(sig)
         parts = [
             numba.__version__,
             str(sys.implementation.cache_tag),
             self._options,
-            *map(str, codegen.magic_tuple()),
+            *map(str, processor),
             *(part for each in arguments for part in _describe_type(each)),
             *_describe_function(self._function),
         ]
@@ -142,8 +159,8 @@ def _log_once(message: str) -> None:
     _log.warning(message)
 
 
-def _read(path: Path) -> bytes | None:
-    """Return the content if it is complete and only this user can have written it."""
+def read_kernel(path: Path) -> bytes | None:
+    """Return the machine code if it is complete and no other user wrote it."""
     try:
         with path.open("rb") as file:
             status = os.fstat(file.fileno())
@@ -244,8 +261,11 @@ def stored_kernels() -> int:
 def are_prepared(version: str) -> bool:
     """Return whether :func:`note_prepared` was called for a version of Navette.
 
-    True also where nothing can be stored.
+    True also where nothing can be stored, and where the package contains them.
     """
+    archive = package_archive()
+    if archive is not None and archive.is_complete():
+        return True
     mark = _mark(version)
     if mark is None:
         return True

@@ -17,6 +17,7 @@ from navette.navigation.stack.options import RunOptions
 @pytest.fixture
 def empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(kernels, "_folder", lambda: tmp_path)
+    monkeypatch.setattr(kernels, "package_archive", lambda: None)
     return tmp_path
 
 

@@ -220,7 +220,7 @@ def _chunk_costs(
     at, from_ = np.zeros(n, np.int32), np.empty(n, np.int32)
     near = np.empty((5, n), np.float32)
     index = np.empty(n, np.int32)
-    is_tight = on_path.max() > (weights.clearance_m - np.float32(TIGHT_M)) ** 2
+    is_tight: Any = _largest(on_path) > (weights.clearance_m - np.float32(TIGHT_M)) ** 2
     costs[:] = 0.0
     for t in range(steps):
         before[:] = speed[steering]
@@ -244,6 +244,15 @@ def _chunk_costs(
         _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
         _delay_costs(path, at, weights.progress, steps, costs)
     _remaining_costs(pose, path, at, weights.progress, costs)
+
+
+@kernel
+def _largest(values: Array32) -> float:
+    # Not values.max(): its machine code imports Numba's implementation, and SciPy.
+    largest: float = values[0]
+    for value in values:
+        largest = max(largest, value)
+    return largest
 
 
 @kernel(nogil=True, fastmath=True)

@@ -1,0 +1,66 @@
+"""Compile the kernels of a drive for a generic processor: the archive of a wheel.
+
+    python -m navette.navigation.stack.kernel_build
+
+writes the archive of this Python and platform into the package (hatch_build.py runs it
+when a wheel is built).
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from navette.files.kernel_archive import (
+    archive_path,
+    generic_processor,
+    write_archive,
+)
+from navette.files.kernels import read_kernel
+from navette.navigation.stack.kernel_part import PARTS
+
+_PART_MODULE = "navette.navigation.stack.kernel_part"
+
+
+def build_archive(path: Path) -> int:
+    """Compile the kernels in two processes; return their number.
+
+    Raises:
+        OSError: this host does not run the machine code of its generic processor.
+        subprocess.CalledProcessError: the kernels did not compile.
+    """
+    processor = generic_processor()
+    if processor is None:
+        raise OSError("this processor is older than the generic one of its kind")
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {
+            **os.environ,
+            "NUMBA_CACHE_DIR": cache,
+            "NUMBA_CPU_NAME": processor.name,
+            "NUMBA_CPU_FEATURES": "",  # those of the processor's name
+            "NUMBA_DISABLE_INTEL_SVML": "1",  # not every host has it
+        }
+        commands = [[sys.executable, "-m", _PART_MODULE, part] for part in PARTS]
+        processes = [subprocess.Popen(each, env=environment) for each in commands]
+        for process in processes:
+            process.wait()
+        for command, process in zip(commands, processes, strict=True):
+            if process.returncode != 0:
+                raise subprocess.CalledProcessError(process.returncode, command)
+        files = Path(cache).rglob("*.kernel")
+        kernels = {each.name: code for each in files if (code := read_kernel(each))}
+    write_archive(path, kernels)
+    return len(kernels)
+
+
+def main() -> None:
+    """Write the archive, and print its size."""
+    path = archive_path()
+    count = build_archive(path)
+    size_mb = path.stat().st_size / 1e6
+    sys.stdout.write(f"{path}: {count} kernels, {size_mb:.1f} MB\n")
+
+
+if __name__ == "__main__":
+    main()
