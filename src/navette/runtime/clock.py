@@ -5,55 +5,14 @@ jumps there, a paced clock waits first, and with the system clock the loop waits
 modules of the runtime do not read the wall clock.
 """
 
-import threading
 import time
 from abc import ABC, abstractmethod
-from contextlib import suppress
 
 from navette.errors import InvalidValueError
+from navette.runtime.wakeup import Wakeup
 
-# Upper limit of one wait, so that an interrupt (Ctrl-C) is handled on every platform.
-_LONGEST_WAIT_S = 0.25
 # A paced clock that lags by more than this does not catch up.
 _MAX_CATCH_UP_S = 0.25
-
-
-class Wakeup:
-    """Event with which another thread ends a wait.
-
-    In place of ``threading.Event``: an interrupt (Ctrl-C) between two lines of that
-    leaves its lock locked, and the next use waits for ever.
-    """
-
-    __slots__ = ("_unset",)
-
-    def __init__(self) -> None:
-        self._unset = threading.Lock()
-        self._unset.acquire()
-
-    def set(self) -> None:
-        with suppress(RuntimeError):  # it is set already
-            self._unset.release()
-
-    def clear(self) -> None:
-        self._unset.acquire(blocking=False)
-
-    @property
-    def is_pending(self) -> bool:
-        return not self._unset.locked()
-
-    def wait(self, timeout_s: float | None) -> bool:
-        """Return True if woken, False after ``timeout_s`` (None: no limit)."""
-        deadline = None if timeout_s is None else time.perf_counter() + timeout_s
-        while True:
-            left = _LONGEST_WAIT_S
-            if deadline is not None:
-                left = min(left, deadline - time.perf_counter())
-            if self._unset.acquire(timeout=max(left, 0.0)):
-                self.set()
-                return True
-            if deadline is not None and time.perf_counter() >= deadline:
-                return False
 
 
 class ContextClock(ABC):

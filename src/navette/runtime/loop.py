@@ -14,10 +14,11 @@ from typing import Any, NamedTuple, NoReturn
 from navette.errors import CallbackError
 from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from navette.runtime.callback_threads import group_of_this_thread
-from navette.runtime.clock import ContextClock, Wakeup
+from navette.runtime.clock import ContextClock
 from navette.runtime.events import Call, Entity
 from navette.runtime.future import Task
 from navette.runtime.time import seconds_to_ns
+from navette.runtime.wakeup import new_wakeup
 
 # How long a thread that may not drive the loop waits before it checks again.
 _TURN_S = 0.005
@@ -49,7 +50,7 @@ class EventLoop:
         self._ruled: list[CallbackGroup] = []
         self._ran = 0  # events since those groups' rules were called
         self._inbox: deque[Entity] = deque()
-        self._wakeup = Wakeup()
+        self._wakeup = new_wakeup()
         self._attention = False
         self._closed = False
         self._driver: int | None = None
@@ -93,21 +94,20 @@ class EventLoop:
     ) -> Call:
         """Run ``function`` at ``time_ns``, or now if that time has passed."""
         call = Call(function, self.free_group, source, node)
-        call.token = self.schedule(time_ns, call)
+        self.schedule(time_ns, call)
         return call
 
-    def schedule(self, time_ns: int, entity: Any) -> int:
-        """Queue ``entity`` for ``time_ns`` and return a token.
+    def schedule(self, time_ns: int, entity: Any) -> None:
+        """Queue ``entity`` for ``time_ns`` and set its ``token``.
 
-        The entity runs only if its ``token`` is still that one.
+        The entity runs only if it still has that token.
         """
         with self._lock:
             self._sequence += 1
-            token = self._sequence
+            entity.token = token = self._sequence
             heapq.heappush(self._heap, (time_ns, token, entity))
         if self.waiting:
             self._wakeup.set()
-        return token
 
     def deadline_ns(self, timeout_sec: float | None) -> int | None:
         """Return the end of a timeout in ns; None (no limit) if None or negative."""

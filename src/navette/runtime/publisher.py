@@ -1,10 +1,9 @@
 """Publishers of topics."""
 
 import logging
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar
 
 from navette.errors import DecodeError
-from navette.msgs import deserialize
 from navette.runtime.destroyable import Destroyable
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.node_entities import NodeEntities
@@ -58,14 +57,19 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._send = watch.observe(send)
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send a copy of ``msg`` (or a CDR message); later edits have no effect.
+        """Send a copy of ``msg``; later edits have no effect.
+
+        Bytes are a serialised message, as in :meth:`publish_encoded`.
 
         Raises:
             MessageError: ``msg`` is of another type (also a TypeError).
             InvalidHandle: the publisher was destroyed.
         """
         if msg.__class__ is not self.msg_type:
-            msg = self._converted(msg)
+            if isinstance(msg, bytes):
+                self.publish_encoded(msg)
+                return
+            check_type(msg, self.msg_type, f"topic {self.endpoint.topic}")
         self._sequence = sequence = self._sequence + 1
         self._send(msg, self._loop.clock.now_ns, sequence)
 
@@ -120,9 +124,3 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def _report_undecodable(self, error: DecodeError) -> None:
         _log.warning("topic %s: message not delivered: %s", self.endpoint.topic, error)
-
-    def _converted(self, msg: Any) -> Any:
-        if isinstance(msg, bytes):
-            return deserialize(msg, cast(Any, self.msg_type))
-        check_type(msg, self.msg_type, f"topic {self.endpoint.topic}")
-        return msg

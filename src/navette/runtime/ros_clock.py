@@ -138,12 +138,12 @@ class Clock(HasHandle):
     def now(self) -> Time:
         return Time(nanoseconds=self.now_ns, clock_type=self._clock_type)
 
-    def schedule(self, time_ns: int, entity: Any) -> int:
-        """Queue ``entity`` on the loop for a time of this clock; return its token."""
+    def schedule(self, time_ns: int, entity: Any) -> None:
+        """Queue ``entity`` on the loop for a time of this clock; set its token."""
         source = self._loop.clock
         if self._clock_type is ClockType.STEADY_TIME and not source.is_virtual:
             time_ns += source.now_ns - monotonic_ns()
-        return self._loop.schedule(time_ns, entity)
+        self._loop.schedule(time_ns, entity)
 
     def create_jump_callback(
         self,
@@ -189,7 +189,7 @@ class Clock(HasHandle):
             context.loop.run(until_ns=context.clock.now_ns + left_ns, done=done)
         else:
             alarm = Call(context.loop.wake, context.loop.free_group, "sleep", "")
-            alarm.token = self.schedule(until_ns, alarm)
+            self.schedule(until_ns, alarm)
             context.loop.run(done=done)
             alarm.token = -1
         return context.ok() and self.now_ns >= until_ns
@@ -229,13 +229,14 @@ class ROSClock(Clock):
             return self._override_ns
         return self._loop.clock.now_ns
 
-    def schedule(self, time_ns: int, entity: Any) -> int:
+    def schedule(self, time_ns: int, entity: Any) -> None:
         if self._override_ns is None:
-            return self._loop.schedule(time_ns, entity)
+            self._loop.schedule(time_ns, entity)
+            return
         # Negative tokens differ from those of the loop's heap.
         self._tokens -= 1
+        entity.token = self._tokens
         heapq.heappush(self._waiting, (time_ns, -self._tokens, entity))
-        return self._tokens
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set the simulated time and queue the entities that are due."""

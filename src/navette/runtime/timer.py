@@ -175,7 +175,7 @@ class Timer(Destroyable, Entity):
             self._next_ns += step_ns
 
     def _arm(self) -> None:
-        self.token = self._clock.schedule(self._next_ns, self)
+        self._clock.schedule(self._next_ns, self)
 
     def _on_jump(self, jump: TimeJump) -> None:
         """Restart the period when the clock is set back or its source changes."""

@@ -1,6 +1,8 @@
 """Virtual, paced and system clocks, with a fake wall clock."""
 
+import os
 import signal
+import threading
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -10,7 +12,13 @@ import pytest
 from navette.errors import InvalidValueError
 from navette.runtime import PacedClock, SystemClock, VirtualClock
 from navette.runtime import clock as clock_module
-from navette.runtime.clock import Wakeup
+from navette.runtime import wakeup as wakeup_module
+from navette.runtime.clock import Stopwatch
+from navette.runtime.events import Call
+from navette.runtime.loop import EventLoop
+from navette.runtime.wakeup import DescriptorWakeup, Wakeup, new_wakeup
+
+LIMIT_S = 20.0  # reached by a defect only
 
 
 class FakeWall:
@@ -47,6 +55,7 @@ class FakeWakeup(Wakeup):
 def wall(monkeypatch: pytest.MonkeyPatch) -> FakeWall:
     fake = FakeWall()
     monkeypatch.setattr(clock_module, "time", fake)
+    monkeypatch.setattr(wakeup_module, "time", fake)
     return fake
 
 
@@ -148,8 +157,12 @@ def test_negative_start_raises() -> None:
         VirtualClock(-1)
 
 
-def test_wakeup_ends_a_wait() -> None:
-    wakeup = Wakeup()
+KINDS = [Wakeup, *([DescriptorWakeup] if hasattr(os, "eventfd") else [])]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_wakeup_ends_a_wait(kind: type[Wakeup]) -> None:
+    wakeup = kind()
     wakeup.set()
     assert wakeup.wait(None)
     wakeup.clear()
@@ -157,9 +170,10 @@ def test_wakeup_ends_a_wait() -> None:
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="POSIX timers")
-def test_ctrl_c_in_any_line_of_a_wait_leaves_it_usable() -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_ctrl_c_in_any_line_of_a_wait_leaves_it_usable(kind: type[Wakeup]) -> None:
     """With threading.Event, one in a few thousand interrupts locked it for ever."""
-    wakeup = Wakeup()
+    wakeup = kind()
     rng = np.random.default_rng(0)
     before = signal.signal(signal.SIGALRM, signal.default_int_handler)
     try:
@@ -180,3 +194,58 @@ def test_ctrl_c_in_any_line_of_a_wait_leaves_it_usable() -> None:
     assert wakeup.wait(None)
     wakeup.clear()
     assert not wakeup.is_pending
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("timeout_s", [0.0, 300e-6, 2.3e-3])
+def test_a_wait_ends_at_its_timeout(kind: type[Wakeup], timeout_s: float) -> None:
+    watch = Stopwatch()
+    assert not kind().wait(timeout_s)
+    assert watch.elapsed_s >= timeout_s
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_set_by_another_thread_is_never_missed(kind: type[Wakeup]) -> None:
+    here, there = kind(), kind()
+
+    def answer() -> None:
+        for _ in range(2000):
+            assert there.wait(LIMIT_S)
+            there.clear()
+            here.set()
+
+    thread = threading.Thread(target=answer)
+    thread.start()
+    for _ in range(2000):
+        there.set()
+        assert here.wait(LIMIT_S)
+        here.clear()
+    thread.join()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="POSIX")
+def test_a_forked_process_has_its_own_wakeup() -> None:
+    wakeup = new_wakeup()
+    child = os.fork()
+    if not child:
+        wakeup.set()
+        os._exit(not wakeup.is_pending)
+    assert os.waitpid(child, 0)[1] == 0
+    assert not wakeup.wait(0.0)
+
+
+def test_an_entity_has_its_token_before_the_loop_is_woken() -> None:
+    """Otherwise the loop takes the event for a cancelled one and drops it."""
+    tokens: list[int] = []
+
+    class Recorder(Wakeup):
+        def set(self) -> None:
+            tokens.append(call.token)
+
+    loop = EventLoop(VirtualClock())
+    loop._wakeup = Recorder()
+    loop.waiting = True
+    call = Call(lambda: None, loop.free_group, "test", "")
+    loop.schedule(5, call)
+    assert tokens == [call.token]
+    assert call.token != 0

@@ -11,7 +11,8 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from navette.errors import LockStepError
-from navette.runtime.clock import ContextClock, Stopwatch, Wakeup
+from navette.runtime.clock import ContextClock, Stopwatch
+from navette.runtime.wakeup import Wakeup
 from navette.transports.lockstep import (
     Participants,
     StepGrant,

@@ -10,9 +10,9 @@ from navette.runtime.clock import (
     PacedClock,
     Stopwatch,
     VirtualClock,
-    Wakeup,
 )
 from navette.runtime.lockstep.clock import LIMIT_S, REPEAT_S, LockStepClock
+from navette.runtime.wakeup import Wakeup
 from navette.transports.lockstep import (
     Participants,
     Sent,

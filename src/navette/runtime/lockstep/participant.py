@@ -1,8 +1,8 @@
 """The clock of a process that takes part in a simulator's lock-step."""
 
 from navette.errors import LockStepError
-from navette.runtime.clock import Wakeup
 from navette.runtime.lockstep.clock import LIMIT_S, REPEAT_S, LockStepClock
+from navette.runtime.wakeup import Wakeup
 from navette.transports.lockstep import Participants, StepGrant, StepReport, StepWire
 
 

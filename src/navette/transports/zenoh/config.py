@@ -67,7 +67,9 @@ _COMMON: dict[str, Any] = {
             "open_timeout": _OPEN_TIMEOUT_MS,
             "accept_pending": 1000,
             "max_sessions": 10_000,
-        }
+        },
+        # Samples are put into shared memory by the publisher (shared_memory.py).
+        "shared_memory": {"transport_optimization": {"messages": ["query", "reply"]}},
     },
 }
 

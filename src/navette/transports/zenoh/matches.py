@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 from navette.transports.base import Endpoint, Item
 from navette.transports.expiring import age_ns
+from navette.transports.qos import INFINITE_NS
 
 
 class Matches:
@@ -20,6 +21,7 @@ class Matches:
         by_gid: the same by gid.
         sessions: gid → session.
         asserting: gids of matched publishers with liveliness MANUAL_BY_TOPIC.
+        limited: gids of matched publishers whose samples expire.
         refused: gids of publishers whose QoS is incompatible.
     """
 
@@ -38,6 +40,7 @@ class Matches:
         self.by_gid: dict[bytes, Endpoint] = {}
         self.sessions: dict[bytes, str] = {}
         self.asserting: set[bytes] = set()
+        self.limited: set[bytes] = set()
         self.refused: set[bytes] = set()
 
     def add(self, key: str, remote: Endpoint) -> None:
@@ -46,6 +49,8 @@ class Matches:
         self.sessions[remote.gid] = key.split("/", 3)[2]
         if remote.qos.asserts_itself:
             self.asserting.add(remote.gid)
+        if 0 < remote.qos.lifespan_ns < INFINITE_NS:
+            self.limited.add(remote.gid)
 
     def remove(self, key: str) -> bool:
         """Remove the endpoint of a token; return whether it was matched."""
@@ -54,6 +59,7 @@ class Matches:
             self.by_gid.pop(remote.gid, None)
             self.sessions.pop(remote.gid, None)
             self.asserting.discard(remote.gid)
+            self.limited.discard(remote.gid)
         return remote is not None
 
     def clear(self) -> None:
@@ -61,6 +67,7 @@ class Matches:
         self.by_gid.clear()
         self.sessions.clear()
         self.asserting.clear()
+        self.limited.clear()
 
     def publisher_of_other_topic(self, gid: bytes) -> str:
         """Return the topic of the gid's publisher if it is another one; else "".

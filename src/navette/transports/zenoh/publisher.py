@@ -13,6 +13,7 @@ from navette.transports.encoded import Encoded
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_publisher
+from navette.transports.zenoh.shared_memory import MIN_BYTES
 
 
 class ZenohPublisher(PublisherPort):
@@ -67,7 +68,10 @@ class ZenohPublisher(PublisherPort):
         ):
             return
         attachment = Attachment(sequence, source_ns, self._entity.gid).encode()
-        data = message.data if message.__class__ is Encoded else serialize(message)
+        data: Any = message.data if message.__class__ is Encoded else serialize(message)
+        if len(data) >= MIN_BYTES and not self._keeps_samples:
+            # A cache would keep the shared memory.
+            data = self._owner.session.shared_pools.stored(data)
         try:
             self._put(data, attachment=attachment)
         except zenoh.ZError:

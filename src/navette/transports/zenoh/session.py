@@ -17,6 +17,7 @@ from navette.transports.zenoh.log_once import LogOnce
 from navette.transports.zenoh.router import RouterRole, refuse
 from navette.transports.zenoh.session_id import new_session_id
 from navette.transports.zenoh.settings import Settings
+from navette.transports.zenoh.shared_memory import SharedPools
 from navette.transports.zenoh.threads import provide_threads
 from navette.transports.zenoh.tokens import SPACE
 
@@ -49,6 +50,7 @@ class ZenohSession:
         self.settings = settings
         self.log_once = LogOnce()
         self.last_received = LastReceived()
+        self.shared_pools = SharedPools()
         self._tokens = f"{SPACE}/{domain_id}/**"
         self._role = RouterRole(settings)
         self._closing = threading.Event()

@@ -15,6 +15,7 @@ from navette.transports.zenoh.attachment import check_length, decode_attachment
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_subscriber
 from navette.transports.zenoh.sequence_filter import SequenceFilter
+from navette.transports.zenoh.shared_memory import copied
 
 _HEADER_SIZE = 4
 _HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
@@ -46,6 +47,10 @@ class ZenohSubscription(SubscriptionPort):
         self._message_class = message_class
         self._sink = sink
         self._buffered = buffered
+        # Read for each sample.
+        self._now_ns = owner.now_ns
+        self._max_bytes = owner.session.settings.max_message_bytes
+        self._last_received = owner.session.last_received
         self._lifespans = Lifespans(self.matches.by_gid, self._log_expired)
         self._filter = SequenceFilter(self.matches.by_gid)
         self._lock = threading.Lock()
@@ -77,54 +82,55 @@ class ZenohSubscription(SubscriptionPort):
     # The following methods run on Zenoh's threads.
 
     def _on_sample(self, sample: zenoh.Sample) -> None:
-        found = self._checked(sample)
-        if found is None:
+        if not self._is_open:
             return
-        gid, item = found
-        self._owner.session.last_received.time_ns = item[2]
+        try:
+            gid, item = self._decoded(sample)
+        except DecodeError as error:
+            self._log_ignored(str(sample.source_info or ""), str(error))
+            return
+        matches = self.matches
+        if gid not in matches.by_gid:
+            if not self._is_for_here(gid):
+                return
+            item = self._lifespans.limited(gid, item)
+        elif gid in matches.limited:
+            item = self._lifespans.limited(gid, item)
+        self._last_received.time_ns = item[2]
         if self._buffered is not None:
             self._buffered.take(gid, item)
             return
-        if self.matches.asserting:
-            self.matches.on_sample(gid, item)
+        if matches.asserting:
+            matches.on_sample(gid, item)
         with self._lock:
             missing = self._filter.accept(gid, item[3])
             if missing is not None and self._is_open:
                 self._sink(item)
         if missing:
-            self._owner.session.graph.lost(self.matches.endpoint, missing)
+            self._owner.session.graph.lost(matches.endpoint, missing)
 
-    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item] | None:
-        """Return the publisher's gid and the item; None if it is not for this port."""
-        if not self._is_open:
-            return None
-        try:
-            gid, item = self._decoded(sample)
-        except DecodeError as error:
-            self._log_ignored(str(sample.source_info or ""), str(error))
-            return None
+    def _is_for_here(self, gid: bytes) -> bool:
+        """Return whether samples of an unmatched publisher are for this port."""
         # A history query returns samples of this session's publishers too, whatever
         # its locality; the in-process transport has delivered them already.
         if gid in self._owner.own_gids or gid in self.matches.refused:
-            return None
+            return False
         if other := self.matches.publisher_of_other_topic(gid):
             self._log_ignored(other, f"sent on {other}; a link is being renewed")
-            return None
-        return gid, self._lifespans.limited(gid, item)
+            return False
+        return True
 
     def _decoded(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
         payload, attachment = sample.payload, sample.attachment
-        check_length(payload, self._owner.session.settings.max_message_bytes)
+        check_length(payload, self._max_bytes)
         if attachment is None:
             raise DecodeError("without an attachment")
-        if len(payload) < _HEADER_SIZE:
-            raise DecodeError(f"{len(payload)} bytes: too short for a CDR header")
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
-        data = payload.to_bytes()
-        if data[:2] not in _HEADERS:
-            raise DecodeError(f"not plain CDR: header {data[:4].hex(' ')}")
+        data = copied(payload)
+        if data[:2] not in _HEADERS or len(data) < _HEADER_SIZE:
+            raise DecodeError(_bad_header(data))
         message = Encoded(data, self._message_class, partial(self._log_damaged, gid))
-        return gid, (message, source_ns, self._owner.now_ns(), sequence)
+        return gid, (message, source_ns, self._now_ns(), sequence)
 
     def _log_expired(self, publisher: Endpoint, text: str) -> None:
         topic = self.matches.endpoint.topic
@@ -140,3 +146,9 @@ class ZenohSubscription(SubscriptionPort):
         self._owner.session.log_once.warning(
             ("sample", topic, peer), f"topic {topic}: message ignored: {reason}"
         )
+
+
+def _bad_header(data: bytes) -> str:
+    if len(data) < _HEADER_SIZE:
+        return f"{len(data)} bytes: too short for a CDR header"
+    return f"not plain CDR: header {data[:_HEADER_SIZE].hex(' ')}"

@@ -76,7 +76,7 @@ class ZenohTransport(Transport):
         self._assertions = LivelinessAssertions(
             self.session.zenoh, domain_id, self._graph.asserted
         )
-        self._graph.observers.append(self._assertions)
+        self._graph.observers += (self._assertions, self.session.shared_pools)
         # In lock-step each publisher is counted from its first sample on, so that it
         # cannot continue the numbers of an earlier one.
         self._tokens = OwnTokens(
