@@ -26,8 +26,7 @@ def final_error(seed: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     context = Context(clock=VirtualClock())
     with context:
         noise = {
-            "localization": "odometry",
-            "filters_odometry": True,
+            "localization": "odometry+imu",
             "wheel_noise_m": 0.01,
             "imu_turn_rate_noise_radps": 0.02,
             "seed": seed,

@@ -47,9 +47,8 @@ def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
         resolved.override_parameters(context.overrides)
         context.overrides.add("missions", {"goals_m": list(GOAL)}, "test")
         noisy = {
-            "localization": "odometry",
+            "localization": "odometry+imu",
             "wheel_noise_m": 0.02,
-            "filters_odometry": True,
             "odometry_child_frame": "",
         }
         context.overrides.add("sim", noisy, "test")

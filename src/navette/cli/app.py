@@ -195,8 +195,9 @@ def demo(
 ) -> None:
     """Run the demo: a robot explores an unknown arena; watch it in the live view.
 
-    The robot drives to a few goals, then waits for goals from the live view. Press
-    Ctrl-C to stop.
+    The robot drives to a few goals, then waits for goals from the live view. It locates
+    itself by noisy wheels, an IMU and SLAM (--localization truth: by the simulator's
+    pose). Press Ctrl-C to stop.
     """
     from navette.navigation.stack import RunOptions, demo_goals
 
@@ -210,6 +211,7 @@ def demo(
         max_time_s=max_time,
         verb="demo",
     )
+    methods = methods.with_localization("slam")
     _run(methods.applied_to(view.applied_to(options)), as_json=False)
 
 

@@ -56,10 +56,12 @@ class MethodOptions:
     localization: Annotated[
         str | None,
         Option(
-            metavar="truth|odometry|slam|amcl",
+            metavar="truth|odometry|slam|amcl[+SENSOR]",
             help="Where the robot's pose comes from: the simulator's true pose, noisy"
-            " wheel odometry alone, or that corrected by SLAM, or by AMCL on a known"
-            " map (--map). Default: truth.",
+            " odometry alone, or that corrected by SLAM, or by AMCL on a known map"
+            " (--map). Odometry is that of the wheels, with slam and amcl fused with"
+            " the IMU; odometry+imu and slam+wheels change that. Default: truth; of"
+            " demo: slam.",
         ),
     ] = None
 
@@ -134,6 +136,10 @@ class MethodOptions:
             "localization": self.localization,
         }
         return {kind: name for kind, name in given.items() if name is not None}
+
+    def with_localization(self, default: str) -> "MethodOptions":
+        """Return the options with a localization if they choose none."""
+        return dataclasses.replace(self, localization=self.localization or default)
 
     def applied_to(self, run: "RunOptions") -> "RunOptions":
         """Return the options of a run with these."""

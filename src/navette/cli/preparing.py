@@ -1,9 +1,11 @@
 """The very first start: kernels are compiled in two processes, and the page shows it.
 
-Later starts load the machine code. Until the simulation opens its live view, a small
-server answers on the same port: the page, and ``/status.json``.
+A third process compiles those of SLAM; the start does not wait for it. Later starts
+load the machine code. Until the simulation opens its live view, a small server answers
+on the same port: the page, and ``/status.json``.
 """
 
+import atexit
 import contextlib
 import importlib.resources
 import json
@@ -23,6 +25,8 @@ from navette.runtime import Stopwatch
 from navette.viewer.listening import listen
 
 _PARTS = ("planning", "driving")
+# Compiled behind these: it is not needed to drive by the simulator's pose.
+_LATER = "locating"
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _PERIOD_S = 0.2
 _END_S = 2.0
@@ -76,23 +80,31 @@ def prepare(
 
 def _compile(progress: Preparation, show: Callable[[str], None]) -> bool:
     """Compile in two processes; return whether both succeeded."""
-    module = "navette.navigation.stack.kernel_part"
     with contextlib.ExitStack() as ends:
+        later = _started(_LATER)
+        unless_done = ends.enter_context(contextlib.ExitStack())
+        unless_done.callback(_end, later)
         processes = []
         for part in _PARTS:
-            process = subprocess.Popen(
-                [sys.executable, "-m", module, part],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
+            process = _started(part)
             ends.callback(_end, process)
             processes.append(process)
         for process in processes:
             while not _has_ended(process):
                 progress.count()
                 show(f"compiled {progress.kernels} kernels, {progress.seconds:.0f} s")
+        unless_done.pop_all()
+        atexit.register(_end, later)
         return all(process.returncode == 0 for process in processes)
+
+
+def _started(part: str) -> "subprocess.Popen[bytes]":
+    return subprocess.Popen(
+        [sys.executable, "-m", "navette.navigation.stack.kernel_part", part],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
 
 
 def _has_ended(process: "subprocess.Popen[bytes]") -> bool:

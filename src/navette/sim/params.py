@@ -8,6 +8,12 @@ from navette.params import Params, param
 
 CONTROL_PERIOD_S = 0.01  # cycle of the motor controller
 
+LOCALIZATIONS = (
+    *("truth", "odometry", "odometry+imu"),
+    *("slam", "slam+imu", "slam+wheels", "amcl", "amcl+imu", "amcl+wheels"),
+)
+"""Sources of the pose, with the sensors that the filter fuses with the wheels."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SimParams(Params):
@@ -40,14 +46,11 @@ class SimParams(Params):
 
     localization: str = param(
         "truth",
-        "source of the pose: the true pose; wheel odometry, which drifts "
-        "(map = odom); or wheel odometry that slam or amcl corrects by map → odom",
-        choices=("truth", "odometry", "slam", "amcl"),
-    )
-    filters_odometry: bool = param(
-        False,
-        "whether a filter (ekf) publishes /odom/filtered and its transform, from "
-        "/wheels/odometry and /imu; false: wheel odometry is published as it is",
+        "source of the pose: the true pose; odometry, which drifts (map = odom); or "
+        "odometry that slam or amcl corrects by map → odom. Odometry is that of the "
+        "wheels, fused by the filter ekf with the sensors after +; slam and amcl "
+        "fuse the IMU unless +wheels",
+        choices=LOCALIZATIONS,
     )
     wheel_noise_m: float = param(
         -1.0,
@@ -73,7 +76,8 @@ class SimParams(Params):
     )
     imu_turn_rate_noise_radps: float = param(
         -1.0,
-        "stddev of the IMU's turn rates; -1 = value of the robot's file",
+        "stddev of the IMU's turn rates; -1 = value of the robot's file, or, if "
+        "that is 0 and localization is not 'truth', 0.005",
         at_least=-1.0,
         at_most=1.0,
     )
@@ -127,6 +131,24 @@ class SimParams(Params):
     )
 
     @property
+    def locator(self) -> str:
+        """Source of the pose without its sensors: truth, odometry, slam or amcl."""
+        return self.localization.partition("+")[0]
+
+    @property
+    def fused_sensors(self) -> frozenset[str]:
+        """Sensors that the filter fuses with the wheels: "imu"."""
+        named = frozenset(self.localization.split("+")[1:])
+        if self.is_corrected and not named:
+            named = frozenset({"imu"})
+        return named - {"wheels"}
+
+    @property
+    def filters_odometry(self) -> bool:
+        """Whether the filter publishes the odometry instead of the simulator."""
+        return bool(self.fused_sensors)
+
+    @property
     def believes_truth(self) -> bool:
         """Whether the published odometry is the true pose."""
         return self.localization == "truth"
@@ -134,13 +156,23 @@ class SimParams(Params):
     @property
     def is_corrected(self) -> bool:
         """Whether another node publishes map → odom."""
-        return self.localization in ("slam", "amcl")
+        return self.locator in ("slam", "amcl")
 
     @property
     def odometry_frame(self) -> str:
         """Frame of the odometry; its own if map → odom is corrected."""
         own = self.is_corrected and self.odom_frame == self.map_frame
         return "odom" if own else self.odom_frame
+
+    def turn_rate_stddev_radps(self, of_robot: float) -> float:
+        """Return the standard deviation of an IMU's turn rates.
+
+        Args:
+            of_robot: value of the robot's file.
+        """
+        if self.imu_turn_rate_noise_radps >= 0.0:
+            return self.imu_turn_rate_noise_radps
+        return of_robot if of_robot > 0.0 or self.believes_truth else 0.005
 
     @property
     def wheel_stddev_m(self) -> float:
@@ -162,8 +194,8 @@ class SimParams(Params):
 FIXED_AT_START = frozenset(
     {
         *("timestep_s", "seed", "camera_renderer", "localization", "wheel_noise_m"),
-        *("filters_odometry", "wheel_scale_error", "wheel_slip_interval_m"),
-        *("wheel_slip_m", "imu_turn_rate_noise_radps", "imu_acceleration_noise_mps2"),
+        *("wheel_scale_error", "wheel_slip_interval_m", "wheel_slip_m"),
+        *("imu_turn_rate_noise_radps", "imu_acceleration_noise_mps2"),
         *("imu_turn_rate_bias_radps", "imu_heading_drift_rad"),
         *("map_frame", "odom_frame", "base_frame", "odometry_child_frame"),
         *("link_frame_prefix", "clock_rate_hz", "odometry_rate_hz", "tf_rate_hz"),

@@ -81,13 +81,10 @@ def _ring_lidars(compiled: Compiled, params: SimParams) -> Iterator[RingLidar]:
 def _imus(compiled: Compiled, params: SimParams) -> Iterator[Imu]:
     """Create the IMUs, with the noise of the parameters if they state one."""
     errors = ImuErrors(params.imu_turn_rate_bias_radps, params.imu_heading_drift_rad)
-    turn_rate, acceleration = (
-        params.imu_turn_rate_noise_radps,
-        params.imu_acceleration_noise_mps2,
-    )
+    acceleration = params.imu_acceleration_noise_mps2
     for sensor, mount in _mounted(compiled, ImuSensor):
-        if turn_rate >= 0.0:
-            sensor = replace(sensor, angular_velocity_stddev=turn_rate)
+        turn_rate = params.turn_rate_stddev_radps(sensor.angular_velocity_stddev)
+        sensor = replace(sensor, angular_velocity_stddev=turn_rate)
         if acceleration >= 0.0:
             sensor = replace(sensor, acceleration_stddev=acceleration)
         yield Imu(sensor, mount, errors)

@@ -80,5 +80,5 @@ def test_processes_end_with_the_preparation(monkeypatch: pytest.MonkeyPatch) -> 
 
     with pytest.raises(KeyboardInterrupt):
         preparing._compile(preparing.Preparation(), interrupted)
-    assert len(started) == 2
+    assert len(started) == 3
     assert all(process.poll() is not None for process in started)

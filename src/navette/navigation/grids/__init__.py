@@ -29,6 +29,7 @@ from navette.navigation.grids.exact_clearance import (
     make_outline,
     signed_distance,
 )
+from navette.navigation.grids.floor_echoes import LEVEL, Upward, is_floor, upward_of
 from navette.navigation.grids.footprint_cells import cells_in_footprint
 from navette.navigation.grids.hit_points import (
     HitPoints,
@@ -73,6 +74,10 @@ from navette.navigation.grids.unseen import (
 from navette.navigation.grids.windows import NO_CELLS, CellWindow
 
 __all__ = [
+    "LEVEL",
+    "Upward",
+    "is_floor",
+    "upward_of",
     "CellWindow",
     "NO_CELLS",
     "padded_sparse",

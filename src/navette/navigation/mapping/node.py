@@ -274,6 +274,8 @@ class MapMemoryNode(StageNode):
     def _place_waiting(self) -> None:
         ready, dropped = self._waiting.take(self._tracker, self._now_ns())
         for lost in dropped:
+            if self._last_stamp_ns == 0:
+                continue  # before the first pose: the localization is starting
             at = f"stamp {lost.stamp_ns / 1e9:.3f} s"
             self._drop("no_pose", f"{lost.reason} ({at})")
         for each in ready:

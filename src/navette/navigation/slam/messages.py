@@ -7,22 +7,31 @@ import numpy as np
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3, yaw_of
 from navette.msgs.sensor_msgs.msg import LaserScan
-from navette.navigation.grids import PlanarScan
+from navette.navigation.grids import (
+    LEVEL,
+    PlanarScan,
+    Upward,
+    beam_directions,
+    is_floor,
+)
 
 # Angle from the horizontal up to which a scanner counts as planar.
 _MOST_TILT_RAD = math.radians(15.0)
 
 
-def planar_scan(msg: LaserScan, base_T_sensor: Transform3) -> tuple[PlanarScan, Pose2]:
+def planar_scan(
+    msg: LaserScan, base_T_sensor: Transform3, upward: Upward = LEVEL
+) -> tuple[PlanarScan, Pose2]:
     """Return a scan and the sensor's pose in the plane of the base.
 
-    The beams of a scanner that is mounted upside down are mirrored.
+    The beams of a scanner that is mounted upside down are mirrored. Echoes of the
+    floor, which a tilted robot sees, become invalid.
 
     Raises:
         InvalidInputError: ranges or angles out of range, or a scanner that is not
             horizontal.
     """
-    (x, y, _), rotation = base_T_sensor
+    (x, y, z), rotation = base_T_sensor
     upright = 1.0 - 2.0 * (rotation[0] ** 2 + rotation[1] ** 2)
     if abs(upright) < math.cos(_MOST_TILT_RAD):
         tilt = math.degrees(math.acos(max(-1.0, min(1.0, abs(upright)))))
@@ -48,4 +57,16 @@ def planar_scan(msg: LaserScan, base_T_sensor: Transform3) -> tuple[PlanarScan, 
         least,
         min(most, 1e6),
     )
-    return scan, Pose2(x, y, yaw_of(rotation))
+    pose = Pose2(x, y, yaw_of(rotation))
+    if upward != LEVEL:
+        _drop_floor(scan, pose, z, upward)
+    return scan, pose
+
+
+def _drop_floor(
+    scan: PlanarScan, base_T_sensor: Pose2, height_m: float, upward: Upward
+) -> None:
+    directions = beam_directions(scan.angle_min, scan.angle_increment, len(scan.ranges))
+    with np.errstate(invalid="ignore", over="ignore"):
+        points = base_T_sensor.apply(directions * scan.ranges[:, None])
+        scan.ranges[is_floor(points, height_m, upward)] = np.nan

@@ -23,7 +23,7 @@ from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMsg
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.navigation.grids import grid_to_message
+from navette.navigation.grids import grid_to_message, upward_of
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.navigation.slam.graph_file import SUFFIX, read_graph, write_graph
 from navette.navigation.slam.messages import planar_scan
@@ -31,6 +31,7 @@ from navette.navigation.slam.params import MAPPING, SlamParams
 from navette.navigation.slam.rendering import MapRenderer
 from navette.navigation.slam.slam import Slam, SlamEstimate
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.attitude import AttitudeTracker
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
@@ -133,6 +134,7 @@ class SlamNode(StageNode):
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose; use the scans that waited for it."""
         if self._tracker.update(msg):
+            self._attitude.update(msg)
             self._use_waiting()
 
     def on_scan(self, msg: LaserScan) -> None:
@@ -170,6 +172,7 @@ class SlamNode(StageNode):
         )
         self._renderer = MapRenderer(params)
         self._tracker = PoseTracker(self, params.base_frame, params.odom_frame)
+        self._attitude = AttitudeTracker()
         self._waiting: deque[tuple[int, LaserScan]] = deque(maxlen=_WAITING)
         self._taken_ns = -(10**18)
         self._newest_ns = 0
@@ -192,7 +195,11 @@ class SlamNode(StageNode):
                 self.drop_input(topics.LIDAR.name, error)
 
     def _use(self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None) -> None:
-        scan, base_T_sensor = planar_scan(msg, self._base_T_sensor(msg.header.frame_id))
+        scan, base_T_sensor = planar_scan(
+            msg,
+            self._base_T_sensor(msg.header.frame_id),
+            upward_of(self._attitude.at(stamp_ns)),
+        )
         estimate = self._slam.add(
             stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor
         )

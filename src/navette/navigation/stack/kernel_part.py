@@ -3,15 +3,16 @@
     python -m navette.navigation.stack.kernel_part PART
 
 The machine code is stored; the program that starts this process then loads it. PART is
-``planning``, or ``driving`` for all the rest and a short drive.
+``planning``, ``locating`` for SLAM, or ``driving`` for all the rest and a short drive.
 """
 
+import os
 import sys
 from collections.abc import Callable
 
 from navette.navigation.stack.options import RunOptions
 
-PARTS = ("planning", "driving")
+PARTS = ("planning", "driving", "locating")
 # Simulated time after which the robot moves and every node has been called.
 _DRIVE_S = 3.0
 
@@ -43,6 +44,15 @@ def compile_driving() -> None:
         simulation.close()
 
 
+def compile_locating() -> None:
+    """Compile the kernels of SLAM, behind the other parts."""
+    if hasattr(os, "nice"):
+        os.nice(19)
+    from navette.navigation.slam.warm_up import warm_up
+
+    warm_up()
+
+
 def _make(name: str) -> None:
     """Create a node, which compiles its kernels, and destroy it."""
     from navette.navigation.stack.stack import node_class
@@ -58,7 +68,7 @@ def _make(name: str) -> None:
 
 
 _COMPILE: dict[str, Callable[[], None]] = dict(
-    zip(PARTS, (compile_planning, compile_driving), strict=True)
+    zip(PARTS, (compile_planning, compile_driving, compile_locating), strict=True)
 )
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from navette.errors import UnknownNameError
 from navette.navigation.localization.amcl.node import AmclNode
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.navigation.localization.localizer.node import LocalizerNode
@@ -19,7 +18,7 @@ LOCALIZATIONS: Mapping[str, tuple[tuple[str, type[StageNode]], ...]] = MappingPr
         "slam": (("slam", SlamNode),),
     }
 )
-"""Parameter ``localization`` of the simulator → name and class of the nodes."""
+"""Source of the pose (``SimParams.locator``) → name and class of the nodes."""
 
 FILTER: tuple[str, type[StageNode]] = ("ekf", EkfNode)
 """The node that publishes the odometry if the simulator does not."""
@@ -27,7 +26,5 @@ FILTER: tuple[str, type[StageNode]] = ("ekf", EkfNode)
 
 def localization_nodes(sim: SimParams) -> tuple[tuple[str, type[StageNode]], ...]:
     """Return name and class of the nodes that locate the robot, in flow order."""
-    if sim.localization not in LOCALIZATIONS:
-        raise UnknownNameError.of("localization", sim.localization, [*LOCALIZATIONS])
-    nodes = LOCALIZATIONS[sim.localization]
+    nodes = LOCALIZATIONS[sim.locator]
     return (FILTER, *nodes) if sim.filters_odometry else nodes

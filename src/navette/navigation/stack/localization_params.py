@@ -37,8 +37,7 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "frequency_hz": sim.odometry_rate_hz,
             "odom0": topics.WHEEL_ODOMETRY.name,
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
-            "imu0": topics.IMU.name,
-            "imu0_config": [name == "vyaw" for name in _ORDER],
+            **_fused(sim),
             "process_noise_covariance": list(_PROCESS_NOISE),
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
         },
@@ -61,4 +60,13 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "start_yaw_rad": yaw,
         },
     }
+    return values
+
+
+def _fused(sim: SimParams) -> dict[str, Any]:
+    """Return the filter's parameters of the sensors beside the wheels."""
+    values: dict[str, Any] = {}
+    if "imu" in sim.fused_sensors:
+        values["imu0"] = topics.IMU.name
+        values["imu0_config"] = [name in ("roll", "pitch", "vyaw") for name in _ORDER]
     return values

@@ -90,8 +90,18 @@ def ekf() -> None:
     from navette.navigation.localization.ekf.node import EkfNode
 
     text = "odometry, IMU, GNSS (topics are parameters) → /odom/filtered, /tf"
-    _parse(_parser("ekf", text))
-    _run(lambda context: EkfNode(context=context), ParameterOverrides())
+    parser = _parser("ekf", text)
+    _add_robot(parser)
+    parser.add_argument(
+        "--localization",
+        metavar="SOURCE",
+        help="fuse the sensors of the simulated robot for this --localization",
+    )
+    given = _parse(parser)
+    if given.localization is None:
+        _run(lambda context: EkfNode(context=context), ParameterOverrides())
+    else:
+        _run_localization("ekf", EkfNode, given, given.localization)
 
 
 @_program
@@ -108,7 +118,7 @@ def amcl() -> None:
     from navette.navigation.localization.amcl.node import AmclNode
 
     text = "/static_map, /lidar, /odom/filtered → /tf (map → odom), /amcl_pose"
-    _run_localization("amcl", AmclNode, text)
+    _run_localization("amcl", AmclNode, _parse_localization("amcl", text), "amcl")
 
 
 @_program
@@ -117,7 +127,7 @@ def slam() -> None:
     from navette.navigation.slam.node import SlamNode
 
     text = "/lidar, /odom/filtered → /tf (map → odom), /pose, /slam/map"
-    _run_localization("slam", SlamNode, text)
+    _run_localization("slam", SlamNode, _parse_localization("slam", text), "slam")
 
 
 @_program
@@ -302,12 +312,17 @@ def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
     )
 
 
-def _run_localization(name: str, node_class: Callable[..., Node], text: str) -> None:
-    """Run a node that corrects the odometry, with the frames of the robot."""
+def _parse_localization(name: str, text: str) -> Any:
     parser = _parser(name, text)
     _add_robot(parser)
     parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
-    given = _parse(parser)
+    return _parse(parser)
+
+
+def _run_localization(
+    name: str, node_class: Callable[..., Node], given: Any, localization: str
+) -> None:
+    """Run a node that locates the robot, with the frames of the robot."""
     from navette.geometry import Pose2
     from navette.navigation.stack.localization_params import localization_parameters
     from navette.sim.params import SimParams
@@ -319,11 +334,12 @@ def _run_localization(name: str, node_class: Callable[..., Node], text: str) -> 
         for frame in ("map_frame", "odom_frame", "base_frame")
         if frame in of_sim
     }
-    x, y, yaw_deg = given.start or (0.0, 0.0, 0.0)
+    given_start = getattr(given, "start", None)
+    x, y, yaw_deg = given_start or (0.0, 0.0, 0.0)
     start = Pose2(x, y, math.radians(yaw_deg))
-    values = localization_parameters(SimParams(localization=name, **frames), start)
-    own = values[name]
-    if given.start is None:
+    sim = SimParams(localization=localization, **frames)
+    own = localization_parameters(sim, start)[name]
+    if given_start is None:
         own = {key: v for key, v in own.items() if "initial_pose" not in key}
     profile = ParameterOverrides()
     profile.add("/**", own, "frames of the robot")

@@ -6,6 +6,7 @@ import pytest
 from navette.errors import ParameterError
 from navette.geometry import Transform3, quaternion_from_rpy, quaternion_from_yaw
 from navette.geometry.messages import transform_message
+from navette.geometry.se3 import multiply
 from navette.msgs.geometry_msgs.msg import (
     PoseWithCovarianceStamped,
     Quaternion,
@@ -172,6 +173,28 @@ def test_an_upside_down_imu_provides_heading_rate_and_level_acceleration() -> No
         elapsed = (stamp_of(estimates.last) - SECOND) / 1e9
         vx = estimates.last.twist.twist.linear.x
         assert vx == pytest.approx(0.4 * elapsed, abs=1e-3)
+
+
+def test_the_measured_tilt_is_published_with_the_filtered_heading() -> None:
+    with GraphHarness() as graph:
+        imu = {"imu0": "/imu", "imu0_config": config("roll", "pitch", "vyaw")}
+        _, estimates = started(graph, **WHEELS, **imu)
+        transforms = graph.collect("/tf", "tf2_msgs/msg/TFMessage")
+        placed(graph, "imu_link", Transform3((0, 0, 0.2), quaternion_from_yaw(0.5)))
+        # The IMU's own heading, 2.5 rad, is not used.
+        x, y, z, w = quaternion_from_rpy(0.05, -0.08, 2.0)
+        qx, qy, qz, qw = multiply((x, y, z, w), quaternion_from_yaw(0.5))
+        reading = stamped(Imu(), 1.0, "imu_link")
+        reading.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
+        reading.angular_velocity_covariance = (np.eye(3) * 1e-4).ravel()
+        graph.publish("/wheels", wheels(1.0, 0.0))
+        graph.publish("/imu", reading)
+        graph.run_for(0.2)
+        q = estimates.last.pose.pose.orientation
+        expected = quaternion_from_rpy(0.05, -0.08, 0.0)
+        assert (q.x, q.y, q.z, q.w) == pytest.approx(expected, abs=1e-6)
+        rotation = transforms.last.transforms[0].transform.rotation
+        assert rotation.x == pytest.approx(expected[0], abs=1e-6)
 
 
 def fix(stamp_s: float, latitude: float, longitude: float, status: int = 0):

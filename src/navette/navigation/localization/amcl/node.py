@@ -23,7 +23,7 @@ from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.std_srvs.srv import Empty
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.navigation.grids import grid_from_message
+from navette.navigation.grids import LEVEL, grid_from_message, is_floor, upward_of
 from navette.navigation.localization.amcl.confidence import LocalizationState
 from navette.navigation.localization.amcl.localizer import (
     Located,
@@ -42,6 +42,7 @@ from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.input_check import input_check
+from navette.runtime.stage.attitude import AttitudeTracker
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
@@ -91,6 +92,7 @@ class AmclNode(StageNode):
         self._map: OccupancyGrid | None = None
         self._state = LocalizationState.NO_MAP
         self._tracker = self._new_tracker()
+        self._attitude = AttitudeTracker()
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._status.report(LocalizationState.NO_MAP, StatusReporter.ERROR)
         self.create_service(
@@ -109,7 +111,8 @@ class AmclNode(StageNode):
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose of the odometry."""
-        self._tracker.update(msg)
+        if self._tracker.update(msg):
+            self._attitude.update(msg)
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Localize on a map; another one keeps the pose."""
@@ -128,8 +131,18 @@ class AmclNode(StageNode):
         if odom_T_base is None or base_T_sensor is None:
             return
         points = scan_points(msg, base_T_sensor, self.params)
+        upward = upward_of(self._attitude.at(stamp_ns))
+        if upward != LEVEL:
+            points = points[~is_floor(points, self._height_of(msg), upward)]
         located = self._localizer.step(ScanView(points, odom_T_base, stamp_ns))
         self._publish(located, odom_T_base, stamp_ns)
+
+    def _height_of(self, msg: LaserScan) -> float:
+        """Return the height of the scanner above the base, m."""
+        base, frame_id = self.params.base_frame_id, msg.header.frame_id
+        if frame_id == base:
+            return 0.0
+        return self._tracker.buffer.lookup(base, frame_id, 0).translation[2]
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Continue from a pose of a person or program."""

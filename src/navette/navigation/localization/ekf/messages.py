@@ -2,8 +2,15 @@
 
 import numpy as np
 
-from navette.geometry import Pose2, quaternion_from_yaw
+from navette.geometry import (
+    Pose2,
+    Transform3,
+    quaternion_from_yaw,
+    yaw_of,
+)
 from navette.geometry.messages import header
+from navette.geometry.se3 import Quaternion as Rotation
+from navette.geometry.se3 import multiply
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
@@ -20,19 +27,30 @@ from navette.navigation.localization.ekf.state import VX, VY, VYAW, YAW, Array, 
 PLANAR_POSE = np.ix_([0, 1, 5], [0, 1, 5])
 
 
-def odometry_message(estimate: Estimate, world: str, base: str) -> Odometry:
+def transform_of(estimate: Estimate, attitude: Rotation) -> Transform3:
+    """Return world_T_base: position and heading of the estimate, measured tilt."""
+    x, y, yaw = pose_of(estimate)
+    turn = quaternion_from_yaw(yaw - yaw_of(attitude))
+    return Transform3((x, y, 0.0), multiply(turn, attitude))
+
+
+def odometry_message(
+    estimate: Estimate, world: str, base: str, attitude: Rotation
+) -> Odometry:
     """Return pose in the world frame and velocity along the base's axes.
 
-    The variances of height, roll and pitch are 0: the robot is assumed to stay level.
+    Args:
+        attitude: measured orientation of the base, for roll and pitch. Their variances,
+            and that of the height, are 0.
     """
     state = estimate.state
-    qx, qy, qz, qw = quaternion_from_yaw(state[YAW])
+    (x, y, _), (qx, qy, qz, qw) = transform_of(estimate, attitude)
     return Odometry(
         header=header(estimate.stamp_ns, world),
         child_frame_id=base,
         pose=PoseWithCovariance(
             pose=Pose(
-                position=Point(x=float(state[X]), y=float(state[Y])),
+                position=Point(x=x, y=y),
                 orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),
             ),
             covariance=_spatial(estimate.covariance, [X, Y, YAW]),

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from navette.errors import InvalidInputError, ParameterError, TransformError
-from navette.geometry import Transform3
+from navette.geometry import Quaternion, Transform3
 from navette.geometry.messages import transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
@@ -23,13 +23,18 @@ from navette.navigation.localization.ekf.messages import (
     PLANAR_POSE,
     odometry_message,
     pose_of,
+    transform_of,
 )
 from navette.navigation.localization.ekf.params import (
     FIXED_AT_START,
     SOURCES,
     EkfParams,
 )
-from navette.navigation.localization.ekf.sensors import KINDS, FilterInput
+from navette.navigation.localization.ekf.sensors import (
+    KINDS,
+    FilterInput,
+    ImuInput,
+)
 from navette.navigation.localization.ekf.state import (
     PLANAR,
     is_covariance,
@@ -46,6 +51,7 @@ from navette.runtime import (
 from navette.runtime.stage.path_messages import pose_of as pose_of_message
 
 _WARNING_PERIOD_NS = 5_000_000_000
+_LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 # Of an initial pose without variances; those of RViz.
 _INITIAL_COVARIANCE = np.diag([0.25, 0.25, 0.0685])
 
@@ -201,6 +207,12 @@ class EkfNode(StageNode):
         params = self.params
         return params.world_frame == params.map_frame != params.odom_frame
 
+    @property
+    def _attitude(self) -> Quaternion:
+        """Measured orientation of the base; level without an IMU."""
+        imu = self._sensors.get("imu0")
+        return imu.attitude if isinstance(imu, ImuInput) else _LEVEL
+
     def _start(self) -> None:
         params = self.params
         noise, initial = (
@@ -258,7 +270,9 @@ class EkfNode(StageNode):
 
     def _publish(self, estimate: Estimate) -> None:
         params = self.params
-        message = odometry_message(estimate, params.world_frame, params.base_link_frame)
+        message = odometry_message(
+            estimate, params.world_frame, params.base_link_frame, self._attitude
+        )
         self.publish(topics.ODOMETRY.name, message)
         if params.publish_tf:
             self._publish_transform(estimate)
@@ -266,7 +280,7 @@ class EkfNode(StageNode):
     def _publish_transform(self, estimate: Estimate) -> None:
         params = self.params
         child = params.base_link_frame
-        transform = Transform3.from_pose2(pose_of(estimate))
+        transform = transform_of(estimate, self._attitude)
         if self._is_on_map:
             child = params.odom_frame
             try:
@@ -274,7 +288,7 @@ class EkfNode(StageNode):
             except TransformError as error:
                 self._warn("tf", f"/tf not published: {error}")
                 return
-            transform = transform @ base_T_odom
+            transform = Transform3.from_pose2(pose_of(estimate)) @ base_T_odom
         stamped = transform_message(
             estimate.stamp_ns, params.world_frame, child, transform
         )

@@ -19,7 +19,7 @@ GIVEN = {
     "odom1": _POSE + _TWIST,
     "pose0": _POSE,
     "twist0": _TWIST,
-    "imu0": ("yaw", "vyaw", "ax", "ay"),
+    "imu0": ("roll", "pitch", "yaw", "vyaw", "ax", "ay"),
 }
 SOURCES = (*GIVEN, "gps0")
 

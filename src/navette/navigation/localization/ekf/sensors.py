@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from navette.errors import InvalidInputError
-from navette.geometry import Pose2, Transform3, yaw_of
+from navette.geometry import Pose2, Quaternion, Transform3, yaw_of
 from navette.geometry.geodesy import GeoPoint, LocalPlane
 from navette.geometry.se3 import multiply, rotate
 from navette.msgs.geometry_msgs.msg import Pose
@@ -29,12 +29,22 @@ from navette.navigation.localization.ekf.readings import (
     twist_reading,
     without_variance,
 )
-from navette.navigation.localization.ekf.state import AX, VX, VYAW, YAW, Array, X, Y
+from navette.navigation.localization.ekf.state import (
+    AX,
+    SPATIAL,
+    VX,
+    VYAW,
+    YAW,
+    Array,
+    X,
+    Y,
+)
 
 _LOG = logging.getLogger(__name__)
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, and turning about z, of six
 # A larger value (m, m/s, …) would make later corrections overflow.
 _LARGEST = 1e9
+_LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class Frames(Protocol):
@@ -173,12 +183,19 @@ class TwistInput(FilterInput):
 class ImuInput(FilterInput):
     """sensor_msgs/msg/Imu: heading, turn rate, acceleration.
 
-    Any mounting attitude is supported. The difference between its acceleration and that
+    Roll and pitch are not filtered: :attr:`attitude` is the newest reading. Any
+    mounting attitude is supported. The difference between its acceleration and that
     of the base while the robot turns is ignored.
     """
 
+    def reset(self) -> None:
+        super().reset()
+        self.attitude: Quaternion = _LEVEL
+
     def measurements(self, msg: Imu, stamp_ns: int) -> Iterator[Measurement]:
         imu_R_base = self.frames.base_in(msg.header.frame_id).rotation
+        if self._measures_tilt:
+            self.attitude = multiply(self._orientation(msg), imu_R_base)
         if self.selection.pose:
             yield self._heading(msg, stamp_ns, imu_R_base)
         if self.selection.twist:
@@ -194,12 +211,7 @@ class ImuInput(FilterInput):
 
     def _heading(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
         covariance = np.asarray(msg.orientation_covariance, float).reshape(3, 3)
-        if covariance[0, 0] == -1.0:
-            raise InvalidInputError(
-                "no_orientation",
-                "orientation_covariance[0] is -1: it measures no orientation",
-            )
-        yaw = yaw_of(multiply(_quaternion(msg.orientation), imu_R_base))
+        yaw = yaw_of(multiply(self._orientation(msg), imu_R_base))
         reading = Reading(stamp_ns, np.array([0.0, 0.0, yaw]), np.zeros((3, 3)))
         reading.covariance[2, 2] = covariance[2, 2]
         _check(reading)
@@ -208,6 +220,19 @@ class ImuInput(FilterInput):
         return self._measured(
             reading, X, (YAW,), self._option("pose_rejection_threshold")
         )
+
+    @property
+    def _measures_tilt(self) -> bool:
+        config = self.params.config_of(self.source)
+        return config[SPATIAL.index("roll")] or config[SPATIAL.index("pitch")]
+
+    def _orientation(self, msg: Imu) -> Quaternion:
+        if msg.orientation_covariance[0] == -1.0:
+            raise InvalidInputError(
+                "no_orientation",
+                "orientation_covariance[0] is -1: it measures no orientation",
+            )
+        return _quaternion(msg.orientation)
 
     def _acceleration(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
         force, covariance = _in_base(
@@ -284,7 +309,7 @@ def _planar(covariance: Any) -> Array:
     return planar
 
 
-def _quaternion(q: Any) -> tuple[float, float, float, float]:
+def _quaternion(q: Any) -> Quaternion:
     if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
         values = [q.x, q.y, q.z, q.w]
         raise InvalidInputError(
