@@ -69,7 +69,7 @@ export class FakeConnection implements Connection {
     return this.status.state === "live";
   }
 
-  callService(): Promise<never> {
+  callService(_service: string, _request: object): Promise<never> {
     return Promise.reject(new Error("no services"));
   }
 

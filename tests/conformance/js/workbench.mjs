@@ -144,6 +144,17 @@ async function panels() {
   await page.getByRole("button", { name: "Continue", exact: true }).last().click();
   await until(page, (before) => Number(navette.connection.nowNs) > before + 5e8, paused);
 
+  // Reset: the robot is at its start, without the goal and without the map.
+  await page.evaluate(() => {
+    window.known = [];
+    navette.connection.subscribe("/map", {}, ({ value }) => known.push(value.data.reduce((sum, cell) => sum + (cell >= 0), 0)));
+  });
+  await until(page, () => known.length > 0 && navette.robot.goal !== null);
+  const grown = await page.evaluate(() => known.at(-1));
+  await page.getByRole("button", { name: "Reset", exact: true }).click();
+  await until(page, (before) => navette.robot.goal === null && known.at(-1) < 0.9 * before, grown);
+  seen.afterReset = [grown, await page.evaluate(() => known.at(-1))];
+
   seen.axe.panels = await serious(page);
   await picture(page, "desktop-light");
 }
