@@ -1,4 +1,4 @@
-"""Worlds of 20 to 300 m at 0.05 m, and each robot: speed in CPU time, and memory.
+"""Worlds of 20 to 300 m at 0.05 m: speed in CPU time, and memory.
 
     python benchmarks/bench_worlds.py [--json]
 
@@ -9,7 +9,6 @@ depends less on other load than that of wall time.
 """
 
 import json
-import random
 import resource
 import subprocess
 import sys
@@ -18,7 +17,6 @@ import time
 from harness import Benchmark, Figure
 
 SIZES_M = (20, 100, 200, 300)
-ROBOTS = ("course", "husky", "turtlebot3_burger", "mecanum", "racecar")
 SPAN_S = 20.0
 FACTORS = {200: 15.0, 300: 10.0}
 MEMORY_MB = {200: 450.0}
@@ -26,36 +24,22 @@ MEMORY_MB = {200: 450.0}
 
 def drive(robot: str, size_m: int) -> dict[str, float]:
     """Drive for some time; return the factor and the peak memory."""
-    from navette.geometry import Pose2
+    from hall import ends, hall
+
     from navette.navigation.stack import RunOptions
     from navette.navigation.stack.simulation import Simulation
-    from navette.sim import World
 
-    half = size_m / 2
-    rng = random.Random(1)
-    hall = World()
-    for x, y, w, h in (
-        (0, half, size_m, 0.3),
-        (0, -half, size_m, 0.3),
-        (half, 0, 0.3, size_m),
-        (-half, 0, 0.3, size_m),
-    ):
-        hall.add_box((x, y), (w, h))
-    for i in range(1, size_m // 10):
-        for j in range(1, size_m // 10):
-            centre = (10 * i - half + rng.uniform(-2, 2),
-                      10 * j - half + rng.uniform(-2, 2))  # fmt: skip
-            hall.add_box(centre, (rng.uniform(0.4, 2.5), rng.uniform(0.4, 2.5)))
+    start, goal = ends(size_m)
     options = RunOptions(
         robot=robot,
-        start=Pose2(4 - half, 4 - half, 0.7),
-        goals=((half - 5, half - 5),),
+        start=start,
+        goals=(goal,),
         headless=True,
         speed=float("inf"),
         max_time_s=SPAN_S,
     )
     parameters = {"control": {"method": "pure_pursuit"}}
-    simulation = Simulation(options, scene=hall.scene(), parameters=parameters)
+    simulation = Simulation(options, scene=hall(size_m), parameters=parameters)
     began = time.process_time()
     simulation.run()
     seconds = time.process_time() - began
@@ -88,9 +72,6 @@ def main() -> None:
         )
         bench.figure(lambda figure=factor: figure)
         bench.figure(lambda figure=memory: figure)
-    for robot in ROBOTS:
-        figure = Figure(f"{robot}, 20 m: factor", measured(robot, 20)["factor"], "×")
-        bench.figure(lambda figure=figure: figure)
     bench.main()
 
 

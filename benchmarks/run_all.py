@@ -25,7 +25,7 @@ PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
     "dispatch", "network", "messages", "recording", "stack", "startup", "verbs",
-    "fifty", "gym", "worlds",
+    "fifty", "gym", "robots", "worlds", "gap",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",

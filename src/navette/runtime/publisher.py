@@ -24,6 +24,7 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     __slots__ = (
         "_entities",
+        "_hand_over",
         "_loop",
         "_send",
         "_sequence",
@@ -53,8 +54,11 @@ class Publisher(Destroyable, Generic[MsgT]):
         self.event_handlers: list[EventHandler] = watch.event_handlers
         self._entities = entities
         self._watch = watch
-        send = ports[0].send if len(ports) == 1 else self._send_to_all
-        self._send = watch.observe(send)
+        is_alone = len(ports) == 1
+        self._send = watch.observe(ports[0].send if is_alone else self._send_to_all)
+        self._hand_over = watch.observe(
+            ports[0].hand_over if is_alone else self._hand_over_to_all
+        )
 
     def publish(self, msg: MsgT | bytes) -> None:
         """Send a copy of ``msg``; later edits have no effect.
@@ -72,6 +76,15 @@ class Publisher(Destroyable, Generic[MsgT]):
             check_type(msg, self.msg_type, f"topic {self.endpoint.topic}")
         self._sequence = sequence = self._sequence + 1
         self._send(msg, self._loop.clock.now_ns, sequence)
+
+    def hand_over(self, msg: MsgT) -> None:
+        """Send a message that is not changed any more, without a copy where possible.
+
+        Subscriptions that share messages get ``msg`` itself. Its float32 fields must
+        hold values of 32 bits, which a copy would round.
+        """
+        self._sequence = sequence = self._sequence + 1
+        self._hand_over(msg, self._loop.clock.now_ns, sequence)
 
     def publish_encoded(self, data: bytes) -> None:
         """Send a serialised message (CDR), which is decoded when a subscriber reads it.
@@ -108,13 +121,17 @@ class Publisher(Destroyable, Generic[MsgT]):
         """Leave the topic; a later :meth:`publish` raises InvalidHandle."""
         for port in self.ports:
             port.close()
-        self._send = self._refuse_to_send
+        self._send = self._hand_over = self._refuse_to_send
         self._watch.stop()
         self._entities.forget(self)
 
     def _send_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
         for port in self.ports:
             port.send(message, source_ns, sequence)
+
+    def _hand_over_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
+        for port in self.ports:
+            port.hand_over(message, source_ns, sequence)
 
     def _refuse_to_send(self, message: Any, source_ns: int, sequence: int) -> None:
         raise InvalidHandle(

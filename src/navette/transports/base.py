@@ -133,6 +133,14 @@ class PublisherPort(ABC):
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
         """Deliver ``message`` as it is now; later changes have no effect."""
 
+    def hand_over(self, message: Any, source_ns: int, sequence: int) -> None:
+        """Deliver a message that the caller does not change any more.
+
+        Its float32 fields hold values of 32 bits. Receivers of shared messages get the
+        message itself.
+        """
+        self.send(message, source_ns, sequence)
+
     def assert_alive(self) -> bool:
         """Assert liveliness without a sample; return whether it reaches everyone."""
         return True

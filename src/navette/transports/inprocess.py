@@ -43,6 +43,14 @@ class InProcessPublisher(PublisherPort):
             self._history = deque(maxlen=endpoint.qos.queue_length)
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        self._deliver(message, source_ns, sequence)
+
+    def hand_over(self, message: Any, source_ns: int, sequence: int) -> None:
+        self._deliver(message, source_ns, sequence, is_final=True)
+
+    def _deliver(
+        self, message: Any, source_ns: int, sequence: int, *, is_final: bool = False
+    ) -> None:
         copied: Callable[[Any], Any] = copy_message
         if self._lifespan_ns < INFINITE_NS:
             message, copied = Expiring(message, source_ns + self._lifespan_ns), _copied
@@ -51,8 +59,9 @@ class InProcessPublisher(PublisherPort):
         for sink in self._sinks:
             sink((copied(message), source_ns, source_ns, sequence))
         if self._shared_sinks or self._history is not None:
-            # One copy for all readers: the caller may change its own later.
-            item = (copied(message), source_ns, source_ns, sequence)
+            # One copy for all readers, unless the caller cannot change its own later.
+            shared = message if is_final else copied(message)
+            item = (shared, source_ns, source_ns, sequence)
             if self._history is not None:
                 self._history.append(item)
             for sink in self._shared_sinks:

@@ -6,6 +6,7 @@ import pytest
 
 from navette.errors import CallbackError, InvalidValueError, MessageError
 from navette.msgs import serialize
+from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.std_msgs.msg import Bool, Float64, String
 from navette.runtime import (
     Context,
@@ -304,3 +305,29 @@ def test_endless_ping_pong_does_not_starve_timers(
     graph.publish("t", String())
     graph.run_for(0)
     assert hits == 1000
+
+
+def test_shared_subscriptions_receive_the_object_that_is_handed_over(
+    graph: GraphHarness,
+) -> None:
+    received: list[OccupancyGrid] = []
+    publisher = graph.node.create_publisher(OccupancyGrid, "map", 1)
+    for shared in (True, True, False, False):
+        graph.node.create_subscription(
+            OccupancyGrid, "map", received.append, 1, shared=shared
+        )
+    message = OccupancyGrid(data=[1, 2, 3])
+    publisher.hand_over(message)
+    graph.run_for(0)
+    assert [each is message for each in received].count(True) == 2
+    own = [each for each in received if each is not message]
+    assert own[0] is not own[1]
+    own[0].data[0] = 7
+    assert [each.data[0] for each in (message, own[1])] == [1, 1]
+
+
+def test_a_destroyed_publisher_hands_nothing_over(graph: GraphHarness) -> None:
+    publisher = graph.node.create_publisher(String, "t", 1)
+    publisher.destroy()
+    with pytest.raises(InvalidHandle):
+        publisher.hand_over(String(data="late"))

@@ -148,12 +148,12 @@ class CostmapNode(StageNode):
             hits = np.concatenate([hits, obstacles])
         if hits is not None:
             points = points_to_message(hits, frame_id, stamp_ns)
-            self.publish(topics.COSTMAP_POINTS.name, points)
+            self.hand_over(topics.COSTMAP_POINTS.name, points)
         message = grid_to_message(cells, self._costmap.spec, frame_id, stamp_ns)
         self._newest = message
-        self.publish(topics.COSTMAP.name, message)
+        self.hand_over(topics.COSTMAP.name, message)
         if self.has_listeners(topics.LOCAL_COSTMAP.name):
-            self.publish(topics.LOCAL_COSTMAP.name, message)
+            self.hand_over(topics.LOCAL_COSTMAP.name, message)
 
     def _report_fault(self, fault: str) -> None:
         """Log a fault of method or source once; without a costmap the robot stops."""

@@ -29,7 +29,7 @@ def grid_to_message(
     )
     info = MapMetaData(
         map_load_time=stamp,
-        resolution=spec.resolution,
+        resolution=float(np.float32(spec.resolution)),  # as in a copy
         width=spec.width,
         height=spec.height,
         origin=origin,

@@ -199,6 +199,11 @@ class MapMemory:
             self.spec, points, 2 + math.ceil(spec.resolution / resolution)
         )
 
+    @property
+    def cells(self) -> NDArray[np.int8]:
+        """The map (H, W) itself: valid until the next change, and not to be changed."""
+        return self._cells
+
     def occupancy(self) -> NDArray[np.int8]:
         """Return a copy (H, W) of the map: -1 unknown, 0 free … 100 lethal."""
         return self._cells.copy()

@@ -331,11 +331,11 @@ class MapMemoryNode(StageNode):
     def _publish_map(self, stamp_ns: int) -> None:
         memory, frame_id = self._memory, self.params.map_frame
         points = points_to_message(memory.hit_points(), frame_id, stamp_ns)
-        self.publish(topics.MAP_POINTS.name, points)
-        message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
+        self.hand_over(topics.MAP_POINTS.name, points)
+        message = grid_to_message(memory.cells, memory.spec, frame_id, stamp_ns)
         self._published = message
-        self.publish(topics.MAP.name, message)
-        self.publish(topics.GLOBAL_COSTMAP.name, message)
+        self.hand_over(topics.MAP.name, message)
+        self.hand_over(topics.GLOBAL_COSTMAP.name, message)
 
     def _load(self, cells: Cells, spec: GridSpec) -> None:
         """Replace the map by a loaded one; scans change it from now on."""

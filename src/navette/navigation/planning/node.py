@@ -521,7 +521,7 @@ class PlannerNode(StageNode):
         poses = self._navigator.take_path()
         if poses is not None:
             message = path_message(poses, self.params.map_frame, self._now_ns)
-            self.publish(topics.PATH.name, message)
+            self.hand_over(topics.PATH.name, message)
             self._path_ns = self._now_ns
             if len(poses):
                 self._publish_plan(message)
@@ -529,7 +529,7 @@ class PlannerNode(StageNode):
 
     def _publish_plan(self, path: Path) -> None:
         if self.has_listeners(topics.PLAN.name):
-            self.publish(topics.PLAN.name, path)
+            self.hand_over(topics.PLAN.name, path)
 
     def _report(self, *, is_logged: bool = False) -> None:
         """Publish the status; log it if it has changed and was not logged already."""

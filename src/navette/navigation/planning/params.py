@@ -55,8 +55,8 @@ class PlannerParams(BendParams):
     )
 
     max_size_m: float = param(
-        400.0,
-        "largest edge of the map with a goal outside it, up to 8000 cells",
+        500.0,
+        "largest edge of the map with a goal outside it, up to 10000 cells",
         above=0.0,
     )
     moving_horizon_s: float = param(

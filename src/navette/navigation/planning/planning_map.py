@@ -14,8 +14,8 @@ Cells = NDArray[np.int8]
 
 # The map is enlarged by multiples of this, and holds this much around a goal.
 _STEP_M = 10.0
-# Largest edge in cells: 64 million cells in all.
-_MOST_CELLS = 8000
+# Largest edge in cells: 100 million cells in all.
+_MOST_CELLS = 10_000
 
 
 class PlanningMap:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
+from navette.msgs import copy_message
 from navette.msgs.geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.std_msgs.msg import Header
@@ -42,10 +43,15 @@ def pose_message(pose: Pose2) -> Pose:
 def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
     """Return poses (N, 3) x, y, yaw as a message with z = 0."""
     header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=frame_id)
-    stamped = [
-        PoseStamped(header=header, pose=pose_message(Pose2(*pose)))
-        for pose in poses.tolist()
-    ]
+    blank, stamped = PoseStamped(), []
+    for x, y, yaw in poses.tolist():
+        # Copies of one message: half the time of constructing each.
+        here = copy_message(blank)
+        here.header = header
+        position, q = here.pose.position, here.pose.orientation
+        position.x, position.y = x, y
+        q.x, q.y, q.z, q.w = quaternion_from_yaw(yaw)
+        stamped.append(here)
     return Path(header=header, poses=stamped)
 
 

@@ -173,10 +173,17 @@ class StageNode(Node):
 
     def publish(self, topic: str, msg: Any) -> None:
         """Publish on an output; ``topic`` is its name in OUTPUTS, before remapping."""
+        self._output(topic).publish(msg)
+
+    def hand_over(self, topic: str, msg: Any) -> None:
+        """Publish a large message that this node does not change any more."""
+        self._output(topic).hand_over(msg)
+
+    def _output(self, topic: str) -> Publisher[Any]:
         publisher = self.publishers_by_topic.get(topic)
         if publisher is None:
             raise UnknownNameError.of("output", topic, list(self.publishers_by_topic))
-        publisher.publish(msg)
+        return publisher
 
     def has_listeners(self, topic: str) -> bool:
         return self.publishers_by_topic[topic].get_subscription_count() > 0

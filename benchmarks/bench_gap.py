@@ -1,0 +1,98 @@
+"""Longest time between two commands to the wheels, in real time, with a page open.
+
+    python benchmarks/bench_gap.py [--seconds S] [--json]
+
+A Jackal drives through a hall of 200 m in real time; simulator, all nodes and the live
+view run in one process. Chromium, without a graphics card, shows the page on the same
+machine. A command is one that reaches the simulated wheels; nominal are 20 a second.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from hall import ends, hall
+from harness import Benchmark, Figure
+
+from navette.msgs.geometry_msgs.msg import Twist
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
+
+SIZE_M = 200
+LIMIT_MS = 100.0
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+SWITCHES = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--window-size=1440,900",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
+
+
+def gaps_ms(seconds: float, browser: str) -> list[float]:
+    """Drive with a page open; return the times between commands while it drives."""
+    start, goal = ends(SIZE_M)
+    options = RunOptions(
+        robot="jackal", start=start, goals=(goal,), max_time_s=seconds, port=0
+    )
+    simulation = Simulation(options, scene=hall(SIZE_M))
+    arrived: list[float] = []
+
+    def on_command(msg: Twist) -> None:
+        arrived.append(time.perf_counter())
+
+    simulation.sim.create_subscription(Twist, "/cmd_vel", on_command, 10, shared=True)
+    assert simulation.viewer is not None, "not headless"
+    with tempfile.TemporaryDirectory() as profile:
+        command = [browser, *SWITCHES, f"--user-data-dir={profile}"]
+        page = subprocess.Popen(
+            [*command, simulation.viewer.url],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        try:
+            simulation.run()
+        finally:
+            simulation.close()
+            page.terminate()
+            page.wait()
+    return [1e3 * (after - before) for before, after in pairwise(arrived)]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=150.0)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    options = parser.parse_args()
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        sys.exit("bench_gap: no Chromium is installed")
+    gaps = gaps_ms(options.seconds, browser)
+    found: dict[str, Any] = {
+        "longest": max(gaps),
+        "99.9 %": float(np.percentile(gaps, 99.9)),
+        "median": float(np.median(gaps)),
+    }
+    bench = Benchmark("command gap", __doc__)
+    for name, value in found.items():
+        limit = LIMIT_MS if name == "longest" else None
+        figure = Figure(f"Jackal, {SIZE_M} m, page open: {name}", value, "ms", limit)
+        bench.figure(lambda figure=figure: figure)
+    bench.run()
+    if options.json:
+        print(json.dumps(bench.as_dict()))
+    else:
+        print(bench.table())
+
+
+if __name__ == "__main__":
+    main()
