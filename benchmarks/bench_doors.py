@@ -8,6 +8,7 @@ import itertools
 import math
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from multiprocessing import get_context
 
@@ -15,13 +16,21 @@ import numpy as np
 
 from navette.geometry import Pose2
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.simulation import Simulation
-from navette.sim import Scene, World
+from navette.sim import Scene, World, footprint_of
 
-WIDTHS_M = {"course": 1.4, "jackal": 0.43, "husky": 0.67, "turtlebot3_burger": 0.178}
-"""Width of each robot's body."""
-LENGTHS_M = {"course": 2.0, "jackal": 0.51, "husky": 0.99, "turtlebot3_burger": 0.15}
+ROBOTS = ("course", "jackal", "husky", "turtlebot3_burger", "racecar", "mecanum")
 LIMIT_S = 90.0
+
+
+@cache
+def body_size_m(robot: str) -> tuple[float, float]:
+    """Return length and width of a robot's body."""
+    model = resolve_scene(RunOptions(world="empty", robot=robot)).scene.robot
+    assert model is not None, "a resolved scene has a robot"
+    length, width = np.ptp(footprint_of(model), axis=0)
+    return float(length), float(width)
 
 
 @dataclass(frozen=True)
@@ -43,7 +52,7 @@ class Door:
     @property
     def unit_m(self) -> float:
         """Length that the room is scaled with."""
-        return max(LENGTHS_M[self.robot], 0.5)
+        return max(body_size_m(self.robot)[0], 0.5)
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Return a point of the room in the map: x across the wall, y along it."""
@@ -105,7 +114,7 @@ def drive(door: Door, seed: int = 1) -> tuple[str, int, float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=list(WIDTHS_M))
+    parser.add_argument("--robots", nargs="+", default=list(ROBOTS))
     parser.add_argument(
         "--slacks", nargs="+", type=float, default=[-0.06, 0.12, 0.2, 0.3]
     )
@@ -117,7 +126,7 @@ def main() -> None:
     cases = list(itertools.product(args.robots, args.thicknesses, args.slacks))
     variants = list(itertools.product(args.angles, args.shifts))
     doors = [
-        Door(robot, WIDTHS_M[robot] + slack, thick, math.radians(angle), shift)
+        Door(robot, body_size_m(robot)[1] + slack, thick, math.radians(angle), shift)
         for robot, thick, slack in cases
         for angle, shift in variants
     ]

@@ -28,6 +28,10 @@ from navette.navigation.planning.traversal import STRAIGHT
 
 # A route with fewer poses has no heading of its own; smaller turns are useless.
 _LEAST_ROUTE, _ALIGNED_RAD = 3, 0.01
+# Places with this much more clearance than the tightest have its heading, too.
+_AS_TIGHT_M = 0.01
+# Squares of the search where centimetres matter.
+_FINE_M = 0.05
 # Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
@@ -78,15 +82,13 @@ class DetourPlanner:
             turn_cost_m_per_rad=params.turn_cost_m_per_rad,
             reverse_factor=params.reverse_factor,
             drive=params.drive,
+            bins_per_step=_fine_bins(step) if self._steers_precisely else 2,
         )
 
     def plan(self, start: Pose2, target: Target, route: Poses | None) -> DetourResult:
         """Plan poses for the body; ``route`` is the grid's, which does not fit."""
         if not self.params.turns_in_place:
-            # The grid's route has corners that the steering cannot follow.
-            found = self._search(np.empty((0, 3)), start, target)
-            poses = found.poses if len(found.poses) else None
-            return DetourResult(poses, found.expansions, found.exhausted)
+            return self._plan_steered(start, target, route)
         effort = 0
         for beginning in (self._usable_beginning(route), _poses(start)):
             if not len(beginning):
@@ -101,6 +103,31 @@ class DetourPlanner:
         poses = self._with_route_after(found.poses, target)
         poses = self._turned_to_goal(poses, target)
         return DetourResult(joined(before, poses), effort, False)
+
+    @property
+    def _steers_precisely(self) -> bool:
+        """Whether a drive that cannot turn in place has centimetres on each side."""
+        return self.router.centres and not self.params.turns_in_place
+
+    def _plan_steered(
+        self, start: Pose2, target: Target, route: Poses | None
+    ) -> DetourResult:
+        """Plan for a drive that cannot turn in place.
+
+        The grid's route has corners that the steering cannot follow; in tight places
+        its heading is one of the search's, after a short bend forward or in reverse.
+        """
+        before = _poses(start)
+        off = self._heading_off(before, route)
+        length_m = self.params.min_turning_radius_m * abs(off)
+        for signed_m in (length_m, -length_m) if off else ():
+            beginning = path_shape.bend(start, off, signed_m)
+            if check_path(beginning, self.grid, self.body).fits:
+                before = beginning
+                break
+        found = self._search(before, start, target)
+        poses = joined(before, found.poses) if len(found.poses) else None
+        return DetourResult(poses, found.expansions, found.exhausted)
 
     def cost(self, poses: Poses) -> float:
         """Return the cost of a path; see :func:`.path_shape.path_cost`."""
@@ -131,25 +158,37 @@ class DetourPlanner:
         passage among them, the body may not fit along it. Only where paths are centred
         in tight places, too.
         """
-        if not self.router.centres or route is None or len(route) < _LEAST_ROUTE:
+        off = self._heading_off(before, route)
+        if off == 0.0:
             return before
+        x, y, yaw = before[-1].tolist()
+        turn = turn_in_place(x, y, yaw, yaw + off)
+        fits = check_path(
+            np.concatenate([before[-1:], turn]), self.grid, self.body
+        ).fits
+        return joined(before, turn) if fits else before
+
+    def _heading_off(self, before: Poses, route: Poses | None) -> float:
+        """Return the turn (rad) after which the tightest place's heading is searched.
+
+        0 where that is one of the headings already, or paths are not centred.
+        """
+        if not self.router.centres or route is None or len(route) < _LEAST_ROUTE:
+            return 0.0
         clearance = exact_clearances(
             self.grid.exact_obstacles,
             make_outline(self.body.footprint),
             route,
             self.body.circumscribed_m,
         )
-        x, y, yaw = before[-1].tolist()
         step = self.motions.heading_step
-        off = angle_difference(float(route[np.argmin(clearance), 2]), yaw)
+        tight = route[clearance <= clearance.min() + _AS_TIGHT_M, 2]
+        # A median: single poses may still turn into the passage.
+        spread = np.remainder(tight - tight[0] + np.pi, 2 * np.pi) - np.pi
+        passage = float(tight[0] + np.median(spread))
+        off = angle_difference(passage, float(before[-1, 2]))
         off -= step * round(off / step)
-        if abs(off) < _ALIGNED_RAD:
-            return before
-        turn = turn_in_place(x, y, yaw, yaw + off)
-        fits = check_path(
-            np.concatenate([before[-1:], turn]), self.grid, self.body
-        ).fits
-        return joined(before, turn) if fits else before
+        return 0.0 if abs(off) < _ALIGNED_RAD else off
 
     def _has_room(self, poses: Poses) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
         """Return at which poses the body can turn in place."""
@@ -232,6 +271,10 @@ class DetourPlanner:
         if route is None or not check_path(route, self.grid, self.body).fits:
             return None
         return joined(poses[: i + 1], route)
+
+
+def _fine_bins(step_m: float) -> int:
+    return max(2, round(step_m / _FINE_M))
 
 
 def _poses(pose: Pose2) -> Poses:

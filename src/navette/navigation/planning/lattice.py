@@ -170,8 +170,7 @@ def _move_table(motions: Motions, per_metre: float) -> MoveTable:
 
 
 def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
-    # Half a step: a move always leaves its bin.
-    bin_cells = max(1.0, motions.step_m / 2 / spec.resolution)
+    bin_cells = max(1.0, motions.bin_m / spec.resolution)
     bins_wide = int(spec.width / bin_cells) + 1
     bins_high = int(spec.height / bin_cells) + 1
     room = len(motions.moves) * max_expansions + 1

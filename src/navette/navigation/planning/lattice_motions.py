@@ -54,6 +54,8 @@ class Motions:
         cusp_cost_m: cost of a change of direction, in metres.
         drive: kind of the drive; an Ackermann drive does not turn in place, an
             omnidirectional one also moves sideways.
+        bins_per_step: of two poses of a heading in the same square, the search keeps
+            one; squares in a step. At least two: a move always leaves its square.
     """
 
     step_m: float
@@ -64,6 +66,7 @@ class Motions:
     reverse_factor: float = 1.5
     cusp_cost_m: float = 0.5
     drive: str = DIFFERENTIAL
+    bins_per_step: int = 2
 
     def __post_init__(self) -> None:
         if self.headings < 8:
@@ -77,6 +80,11 @@ class Motions:
     def moves(self) -> tuple[Move, ...]:
         """The motion set."""
         return MOVES[self.drive]
+
+    @property
+    def bin_m(self) -> float:
+        """Edge of the squares in which the search keeps one pose per heading."""
+        return self.step_m / self.bins_per_step
 
     @property
     def heading_step(self) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.geometry import Pose2
 from navette.navigation.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
 
@@ -65,6 +66,21 @@ def turn_in_place(
     angles = yaw + turn * np.arange(count + 1) / count
     angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
     return np.column_stack([np.full(count + 1, x), np.full(count + 1, y), angles])
+
+
+def bend(start: Pose2, turn: float, length_m: float) -> Poses:
+    """Return poses (N, 3) of an arc that turns by ``turn`` (rad), ``start`` included.
+
+    A negative length is driven in reverse.
+    """
+    count = max(1, math.ceil(abs(turn) / TURN_STEP))
+    share = np.arange(count + 1) / count
+    half = 0.5 * turn * share
+    chord = length_m * share * np.sinc(half / np.pi)
+    x = start.x + chord * np.cos(start.yaw + half)
+    y = start.y + chord * np.sin(start.yaw + half)
+    yaw = np.remainder(start.yaw + turn * share + np.pi, 2 * np.pi) - np.pi
+    return np.column_stack([x, y, yaw])
 
 
 def joined(*pieces: Poses) -> Poses:

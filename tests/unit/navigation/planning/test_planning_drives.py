@@ -1,6 +1,7 @@
 """Motion sets of the drives, and the paths that they give."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from navette.errors import ParameterError
 from navette.geometry import DRIVES, Pose2
 from navette.navigation.planning import Goal, Planner, PlannerParams
 from navette.navigation.planning.lattice_motions import MOVES, Motions
-from navette.navigation.planning.path_shape import lengths
+from navette.navigation.planning.path_shape import bend, directions, lengths
 
 RADIUS_M = 0.85
 PARAMS = {
@@ -90,3 +91,43 @@ def test_drive_and_radius_must_agree() -> None:
         PlannerParams(drive="ackermann")
     with pytest.raises(ParameterError, match="min_turning_radius_m"):
         PlannerParams(min_turning_radius_m=1.0)
+
+
+@pytest.mark.parametrize("length_m", [0.3, -0.3])
+@pytest.mark.parametrize("turn", [0.35, -0.9])
+def test_a_bend_is_an_arc_of_the_length_and_the_turn(
+    length_m: float, turn: float
+) -> None:
+    start = Pose2(1.0, 2.0, 2.9)
+    poses = bend(start, turn, length_m)
+    centre = start.apply(np.array([(0.0, length_m / turn)]))[0]
+    away = np.hypot(*(poses[:, :2] - centre).T)
+    np.testing.assert_allclose(away, abs(length_m / turn))
+    assert turned(poses).sum() == pytest.approx(abs(turn))
+    assert set(directions(poses)) == {math.copysign(1, length_m)}
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.5])
+def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
+    yaw: float,
+) -> None:
+    """The heading of the passage is none of the search's without a bend first."""
+    occupancy, spec = empty_map(8, 8)
+    low, high = 3.79, 4.21
+    fill(occupancy, spec, (3.0, 5.0), (0.0, low))
+    fill(occupancy, spec, (3.0, 5.0), (high, 8.0))
+    along = np.arange(3.0, 5.0, 0.02)
+    across = np.arange(0.0, 8.0, 0.02)
+    across = across[(across < low) | (across > high)]
+    walls = [(x, y) for y in (low, high) for x in along]
+    walls += [(x, y) for x in (3.0, 5.0) for y in across]
+    params = replace(
+        PARAMS["ackermann"],
+        footprint_m=(0.455, 0.15, -0.125, 0.15, -0.125, -0.15, 0.455, -0.15),
+    )
+    planner = Planner(params)
+    planner.set_map(occupancy, spec, np.array(walls))
+    found = planner.plan(Pose2(1.5, 4.6, yaw), Goal(6.5, 4.0))
+    assert found.outcome.has_path
+    assert found.margin_m > 0.02
+    assert (turned(found.poses) <= lengths(found.poses) / RADIUS_M + 0.05).all()
