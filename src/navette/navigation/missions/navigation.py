@@ -34,6 +34,8 @@ from navette.navigation.missions.tree_run import StatusChange, TreeRun
 PREEMPTED_TEXT = "preempted by a newer goal"
 # A robot that does not stop within this time has another problem.
 _REST_TIMEOUT_NS = 5_000_000_000
+# A robot that has just started knows its pose a moment after its first goal.
+_POSE_TIMEOUT_NS = 2_000_000_000
 _LEAST_SPEED_MPS = 0.05
 _NAMES = {code: word for word, code in ERROR_CODES.items()}
 _NAMES[208], _NAMES[308] = "no_path", "no_path"
@@ -106,6 +108,7 @@ class TreeNavigator:
         self.run: TreeRun | None = None
         self.active: Navigation | None = None
         self._cancelled_ns: int | None = None
+        self._first_ns: int | None = None
 
     def load(self, path: Path) -> TreeFile:
         """Read a tree's file; a changed file is read again.
@@ -172,9 +175,18 @@ class TreeNavigator:
             if self._robot.is_at_rest or waited_ns >= _REST_TIMEOUT_NS:
                 self._end(NavigationEnd(CANCELED))
             return
+        if not run.is_running and self._waits_for_pose(active):
+            return
         status = run.tick()
         if status in (SUCCESS, FAILURE):
             self._end(self._outcome(run, status))
+
+    def _waits_for_pose(self, active: Navigation) -> bool:
+        """Whether the first tick waits: most nodes fail while the pose is unknown."""
+        if self._first_ns is None:
+            self._first_ns = active.started_ns
+        waited_ns = self._robot.now_ns - self._first_ns
+        return self._robot.pose() is None and waited_ns < _POSE_TIMEOUT_NS
 
     def progress(self) -> NavigationProgress:
         """Return the values of the feedback."""

@@ -8,6 +8,7 @@ from navette.errors import InvalidValueError, ParameterError
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.std_msgs.msg import Header
 from navette.navigation.missions.node import MissionNode
 from navette.runtime import Parameter
 from navette.runtime.time import ns_to_stamp
@@ -69,7 +70,9 @@ def test_goals_are_sent_in_turn_and_recorded(graph: GraphHarness) -> None:
     node = mission(graph, goals_m=[1.0, 0.0, 3.0, 0.0])
     send_map(graph)
     graph.publish_every(
-        0.1, "/odom/filtered", lambda _: Odometry(child_frame_id="base_link")
+        0.1,
+        "/odom/filtered",
+        lambda _: Odometry(header=Header(frame_id="map"), child_frame_id="base_link"),
     )
     assert graph.run_until(lambda: node.done, 10.0)
     assert planner.goals == [(1.0, 0.0), (3.0, 0.0)]

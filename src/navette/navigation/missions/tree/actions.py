@@ -3,19 +3,22 @@
 import math
 from typing import Any, ClassVar
 
+from py_trees.common import Status
+
 from navette.msgs.builtin_interfaces.msg import Duration
 from navette.msgs.geometry_msgs.msg import Point
 from navette.msgs.nav_msgs.msg import Path
-from navette.navigation.missions.tree.behaviour import (
-    Ports,
-)
+from navette.navigation.missions.tree.behaviour import RUNNING, Ports
 from navette.navigation.missions.tree.calls import (
     SERVER_PORTS,
     ActionLeaf,
+    MissingInputError,
 )
+from navette.navigation.missions.tree.paths import tracking_error
 from navette.navigation.missions.tree.ports import (
     Port,
     output_port,
+    parse_absent,
     parse_bool,
     parse_float,
     parse_message,
@@ -23,6 +26,10 @@ from navette.navigation.missions.tree.ports import (
 from navette.navigation.missions.tree.robot_access import CallResult
 
 _TIME_ALLOWANCE: Ports = {"time_allowance": Port(parse_float, "10.0")}
+_MOTION: Ports = {
+    **_TIME_ALLOWANCE,
+    "disable_collision_checks": Port(parse_absent, "false"),
+}
 
 
 class ComputePathToPoseNode(ActionLeaf):
@@ -35,10 +42,13 @@ class ComputePathToPoseNode(ActionLeaf):
         "use_start": Port(parse_bool),
         "planner_id": Port(default=""),
         "path": output_port(),
+        "viapoints": Port(parse_message),
         **SERVER_PORTS,
     }
 
     def goal(self) -> Any:
+        if self.input("viapoints"):
+            raise MissingInputError("viapoints: not available; plan through poses")
         start = self.input("start")
         use_start = self.input("use_start")
         goal = self.new_goal(
@@ -66,8 +76,13 @@ class ComputePathThroughPosesNode(ComputePathToPoseNode):
         "start": Port(parse_message),
         "planner_id": Port(default=""),
         "path": output_port(),
+        "last_reached_index": output_port(),
         **SERVER_PORTS,
     }
+
+    def succeeded(self, message: Any) -> None:
+        super().succeeded(message)
+        self.output("last_reached_index", len(self.needed("goals")) - 1)
 
     def goal(self) -> Any:
         start = self.input("start")
@@ -88,8 +103,17 @@ class FollowPathNode(ActionLeaf):
         "controller_id": Port(default=""),
         "goal_checker_id": Port(default=""),
         "progress_checker_id": Port(default=""),
+        "path_handler_id": Port(default=""),
+        "tracking_feedback": output_port(),
         **SERVER_PORTS,
     }
+
+    def update(self) -> Status:
+        status = super().update()
+        path, pose = self.input("path"), self.robot.pose()
+        if status is RUNNING and path is not None and path.poses and pose is not None:
+            self.output("tracking_feedback", tracking_error(path, pose))
+        return status
 
     def goal(self) -> Any:
         self._sent = self._fields()
@@ -147,7 +171,7 @@ class SpinNode(ActionLeaf):
     PORTS: ClassVar[Ports] = {
         "spin_dist": Port(parse_float, "1.57"),
         "is_recovery": Port(parse_bool, "true"),
-        **_TIME_ALLOWANCE,
+        **_MOTION,
         **SERVER_PORTS,
     }
 
@@ -168,7 +192,7 @@ class BackUpNode(ActionLeaf):
     PORTS: ClassVar[Ports] = {
         "backup_dist": Port(parse_float, "0.15"),
         "backup_speed": Port(parse_float, "0.025"),
-        **_TIME_ALLOWANCE,
+        **_MOTION,
         **SERVER_PORTS,
     }
 
@@ -187,7 +211,7 @@ class DriveOnHeadingNode(ActionLeaf):
     PORTS: ClassVar[Ports] = {
         "dist_to_travel": Port(parse_float, "0.15"),
         "speed": Port(parse_float, "0.025"),
-        **_TIME_ALLOWANCE,
+        **_MOTION,
         **SERVER_PORTS,
     }
 

@@ -10,6 +10,7 @@ from navette.navigation.missions.tree import (
     path_nodes,
     service_nodes,
     switches,
+    tracking_nodes,
 )
 from navette.navigation.missions.tree.behaviour import LeafNode
 from navette.navigation.missions.tree.controls import BranchNode
@@ -31,6 +32,7 @@ _MODULES = (
     basic_nodes,
     own_nodes,
     switches,
+    tracking_nodes,
 )
 
 
@@ -64,6 +66,26 @@ _BASES = {
 
 KINDS: dict[str, Kind] = _kinds()
 """Every kind of node that a tree may contain."""
+
+# Other names of a kind, in other versions of BehaviorTree.CPP and Nav2.
+KINDS["SequenceStar"] = KINDS["SequenceWithMemory"]
+KINDS["IsStopped"] = KINDS["CheckStopStatus"]
+
+_ROUTES, _DOCKS = "Nav2's route server", "Nav2's docking server"
+_FOLLOWS, _MONITOR = "Nav2's following server", "a collision monitor with a switch"
+NO_SERVER = {
+    "ComputeRoute": _ROUTES,
+    "ComputeAndTrackRoute": _ROUTES,
+    "CancelComputeAndTrackRoute": _ROUTES,
+    "ExtractRouteNodesAsGoals": _ROUTES,
+    "WouldARouteRecoveryHelp": _ROUTES,
+    "DockRobot": _DOCKS,
+    "UndockRobot": _DOCKS,
+    "FollowObject": _FOLLOWS,
+    "CancelFollowObject": _FOLLOWS,
+    "ToggleCollisionMonitor": _MONITOR,
+}
+"""Nav2's nodes whose server the stack does not have, and that server."""
 
 CATEGORIES = {
     "Action": LeafNode,

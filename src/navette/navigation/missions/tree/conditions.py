@@ -1,6 +1,7 @@
 """Conditions: Nav2's, and Navette's FailureIs."""
 
 import math
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from py_trees.common import Status
@@ -20,6 +21,8 @@ from navette.navigation.missions.tree.interfaces import action_interface, interf
 from navette.navigation.missions.tree.paths import point_of
 from navette.navigation.missions.tree.ports import (
     Port,
+    output_port,
+    parse_absent,
     parse_bool,
     parse_float,
     parse_ints,
@@ -176,9 +179,11 @@ class IsPathValidNode(LeafNode):
 
     PORTS: ClassVar[Ports] = {
         "path": Port(parse_message, required=True),
+        "service_name": Port(default="is_path_valid"),
         "server_timeout": Port(parse_milliseconds),
         "max_cost": Port(),
         "consider_cost_change": Port(),
+        "consider_unknown_as_obstacle": Port(parse_absent, "false"),
     }
     _call: ServerCall | None = None
 
@@ -189,14 +194,36 @@ class IsPathValidNode(LeafNode):
         if self.status is not RUNNING or self._call is None:
             kind = "nav2_msgs/srv/IsPathValid"
             request = interface(kind).Request(path=path)
-            self._call = self.robot.call_service(kind, "is_path_valid", request)
+            name = self.input("service_name")
+            self._call = self.robot.call_service(kind, name, request)
         result = self._call.result
         if result is None:
             return RUNNING
         if result.how != SUCCEEDED:
             self.feedback_message = result.reason
             return FAILURE
+        self.found(path, result.message.invalid_pose_indices)
         return to_status(result.message.is_valid)
+
+    def found(self, path: Any, colliding: Sequence[int]) -> None:
+        """Override to write outputs."""
+
+
+class ValidatePathNode(IsPathValidNode):
+    """Lyrical's name of IsPathValid, with the poses that collide."""
+
+    PORTS: ClassVar[Ports] = {
+        **IsPathValidNode.PORTS,
+        "layer_name": Port(),
+        "footprint": Port(),
+        "stop_at_first_collision": Port(parse_bool, "true"),
+        "max_lookahead_distance": Port(parse_float, "-1.0"),
+        "collision_poses": output_port(),
+    }
+
+    def found(self, path: Any, colliding: Sequence[int]) -> None:
+        poses = [path.poses[index] for index in colliding]
+        self.output("collision_poses", poses)
 
 
 class DistanceTraveledNode(LeafNode):

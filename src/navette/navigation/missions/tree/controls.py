@@ -22,7 +22,12 @@ from navette.navigation.missions.tree.behaviour import (
     Ports,
     TreeNode,
 )
-from navette.navigation.missions.tree.ports import Port, parse_count, parse_int
+from navette.navigation.missions.tree.ports import (
+    Port,
+    parse_bool,
+    parse_count,
+    parse_int,
+)
 
 Ticks = Generator[Behaviour, None, Status]
 
@@ -282,7 +287,13 @@ class RecoveryControlNode(BranchNode, Selector):
 
 
 class RoundRobinNode(BranchNode, Selector):
-    """Nav2: tick the next child each time it starts; succeed when one succeeds."""
+    """Nav2: tick the next child each time it starts; succeed when one succeeds.
+
+    After the last child, the first one is next, whatever ``wrap_around`` of Lyrical
+    is: its value false lets a recovery that succeeded as the last one count as failed.
+    """
+
+    PORTS: ClassVar[Ports] = {"wrap_around": Port(parse_bool, "false")}
 
     def begin(self) -> None:
         """Keep the index: the next recovery shall be another one."""

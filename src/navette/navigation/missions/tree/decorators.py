@@ -350,23 +350,40 @@ class SingleTriggerNode(DecoratorNode):
 
 
 class GoalUpdaterNode(DecoratorNode):
-    """Nav2: replace the goal by a newer one from a topic."""
+    """Nav2: replace the goal, or the goals, by newer ones from a topic."""
 
     PORTS: ClassVar[Ports] = {
-        "input_goal": Port(parse_message, required=True),
+        "input_goal": Port(parse_message),
         "output_goal": output_port(),
         "goal_updater_topic": Port(default="goal_update"),
+        "input_goals": Port(parse_message),
+        "output_goals": output_port(),
+        "goals_updater_topic": Port(default="goals_update"),
     }
 
     def run(self) -> Ticks:
+        self.output("output_goal", self._newest_goal())
+        goals = self.input("input_goals")
+        if goals:
+            self.output("output_goals", self._newest_goals(goals))
+        return (yield from self.tick_child())
+
+    def _newest_goal(self) -> Any:
         goal = self.input("input_goal")
         newest = self.robot.newest(
             self.input("goal_updater_topic"), "geometry_msgs/msg/PoseStamped"
         )
         if newest is not None and goal is not None and _stamp(newest) > _stamp(goal):
-            goal = newest
-        self.output("output_goal", goal)
-        return (yield from self.tick_child())
+            return newest
+        return goal
+
+    def _newest_goals(self, goals: Any) -> Any:
+        newest = self.robot.newest(
+            self.input("goals_updater_topic"), "nav_msgs/msg/Goals"
+        )
+        if newest is None or not newest.goals or _stamp(newest) <= _stamp(goals[0]):
+            return goals
+        return list(newest.goals)
 
 
 class ForEachGoalNode(DecoratorNode):

@@ -21,6 +21,7 @@ from navette.navigation.missions.tree.paths import (
 from navette.navigation.missions.tree.ports import (
     Port,
     output_port,
+    parse_count,
     parse_float,
     parse_int,
     parse_message,
@@ -36,6 +37,9 @@ class RemovePassedGoalsNode(LeafNode):
         "robot_base_frame": Port(),
         "input_goals": Port(parse_message, required=True),
         "output_goals": output_port(),
+        # Of Kilted's feedback, which Jazzy's messages do not have.
+        "input_waypoint_statuses": Port(parse_message),
+        "output_waypoint_statuses": output_port(),
     }
 
     def update(self) -> Status:
@@ -43,6 +47,40 @@ class RemovePassedGoalsNode(LeafNode):
         if pose is None or goals is None:
             return FAILURE
         self.output("output_goals", without_passed(goals, pose, self.input("radius")))
+        return SUCCESS
+
+
+class AppendGoalPoseToGoalsNode(LeafNode):
+    """Add a goal to the end of a list."""
+
+    PORTS: ClassVar[Ports] = {
+        "goal_pose": Port(parse_message, required=True),
+        "input_goals": Port(parse_message),
+        "output_goals": output_port(),
+    }
+
+    def update(self) -> Status:
+        goal = self.input("goal_pose")
+        if goal is None:
+            return FAILURE
+        self.output("output_goals", [*(self.input("input_goals") or ()), goal])
+        return SUCCESS
+
+
+class GetNextFewGoalsNode(LeafNode):
+    """Keep the first goals of a list."""
+
+    PORTS: ClassVar[Ports] = {
+        "input_goals": Port(parse_message, required=True),
+        "num_goals": Port(parse_count, required=True),
+        "output_goals": output_port(),
+    }
+
+    def update(self) -> Status:
+        goals = self.input("input_goals")
+        if not goals:
+            return FAILURE
+        self.output("output_goals", list(goals[: self.input("num_goals")]))
         return SUCCESS
 
 
@@ -72,6 +110,7 @@ class TruncatePathLocalNode(LeafNode):
         "distance_forward": Port(parse_float, "8.0"),
         "distance_backward": Port(parse_float, "4.0"),
         "robot_frame": Port(default="base_link"),
+        "robot_base_frame": Port(),
         "transform_tolerance": Port(parse_float, "0.2"),
         "pose": Port(parse_message),
         "angular_distance_weight": Port(parse_float, "0.0"),
@@ -188,6 +227,12 @@ class SmootherSelectorNode(SelectorNode):
     """Choose the smoother."""
 
     WHAT = "smoother"
+
+
+class PathHandlerSelectorNode(SelectorNode):
+    """Choose the path handler; control has one, whatever is chosen."""
+
+    WHAT = "path_handler"
 
 
 class GoalCheckerSelectorNode(SelectorNode):

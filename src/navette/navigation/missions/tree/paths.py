@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, angle_difference, yaw_of
 from navette.msgs.geometry_msgs.msg import PoseStamped
 from navette.msgs.nav_msgs.msg import Path
 
@@ -27,6 +28,32 @@ def nearest_index(path: Path, x: float, y: float) -> int:
     """Return the index of the pose nearest to a point; the path is not empty."""
     distances = [math.dist(point_of(pose), (x, y)) for pose in path.poses]
     return distances.index(min(distances))
+
+
+@dataclass(frozen=True)
+class TrackingError:
+    """How far the robot is off its path; fields of nav2_msgs/TrackingFeedback.
+
+    Attributes:
+        position_tracking_error: m from the nearest pose, positive to its left.
+        heading_tracking_error: rad from the path's direction to the robot's, in
+            [-pi, pi].
+    """
+
+    position_tracking_error: float
+    heading_tracking_error: float
+
+
+def tracking_error(path: Path, pose: Pose2) -> TrackingError:
+    """Return the error at the nearest pose of a path that is not empty."""
+    nearest = path.poses[nearest_index(path, pose.x, pose.y)].pose
+    q = nearest.orientation
+    yaw = yaw_of((q.x, q.y, q.z, q.w))
+    dx, dy = pose.x - nearest.position.x, pose.y - nearest.position.y
+    left = dy * math.cos(yaw) - dx * math.sin(yaw)
+    return TrackingError(
+        math.copysign(math.hypot(dx, dy), left), angle_difference(pose.yaw, yaw)
+    )
 
 
 def truncated(path: Path, distance_m: float) -> Path:

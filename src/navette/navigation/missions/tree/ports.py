@@ -41,6 +41,13 @@ def parse_bool(text: str) -> bool:
     return known[text.lower()]
 
 
+def parse_absent(text: str) -> bool:
+    """Accept ``false`` for an option of newer versions of Nav2 that Navette lacks."""
+    if parse_bool(text):
+        raise ValueError(f"{text!r}: not available here; only false is")
+    return False
+
+
 def parse_ints(text: str) -> tuple[int, ...]:
     """Parse integers separated by ``;`` or ``,``."""
     return tuple(int(word, 10) for word in re.split("[;,]", text) if word.strip())
@@ -65,6 +72,7 @@ KINDS: dict[Callable[[str], Any], str] = {
     parse_int: "whole number",
     parse_count: "whole number or -1",
     parse_bool: "true or false",
+    parse_absent: "false: true is not available here",
     parse_ints: "whole numbers separated by ;",
     parse_texts: "words separated by ;",
     parse_milliseconds: "milliseconds",

@@ -18,11 +18,15 @@ from navette.navigation.missions.tree.ports import (
 )
 from navette.navigation.missions.tree.robot_access import ServerCall
 
+# The stack's costmaps have no plugins: they are cleared as a whole.
+_CLEAR: Ports = {**ServiceLeaf.PORTS, "plugins": Port()}
+
 
 class ClearEntireCostmapNode(ServiceLeaf):
     """Clear a costmap."""
 
     TYPE, IS_RECOVERY = "nav2_msgs/srv/ClearEntireCostmap", True
+    PORTS: ClassVar[Ports] = _CLEAR
 
 
 class ClearCostmapExceptRegionNode(ServiceLeaf):
@@ -31,7 +35,7 @@ class ClearCostmapExceptRegionNode(ServiceLeaf):
     TYPE, IS_RECOVERY = "nav2_msgs/srv/ClearCostmapExceptRegion", True
     PORTS: ClassVar[Ports] = {
         "reset_distance": Port(parse_float, "1.0"),
-        **ServiceLeaf.PORTS,
+        **_CLEAR,
     }
 
     def request(self) -> Any:
@@ -52,7 +56,7 @@ class ClearCostmapAroundPoseNode(ServiceLeaf):
     PORTS: ClassVar[Ports] = {
         "pose": Port(parse_message, required=True),
         "reset_distance": Port(parse_float, "1.0"),
-        **ServiceLeaf.PORTS,
+        **_CLEAR,
     }
 
     def request(self) -> Any:

@@ -14,7 +14,12 @@ from pathlib import Path
 from navette.errors import FileFormatError
 from navette.navigation.missions.tree.behaviour import NodeSetup, TreeNode
 from navette.navigation.missions.tree.blackboard import TreeBlackboard
-from navette.navigation.missions.tree.catalog import CATEGORIES, KINDS, Kind
+from navette.navigation.missions.tree.catalog import (
+    CATEGORIES,
+    KINDS,
+    NO_SERVER,
+    Kind,
+)
 from navette.navigation.missions.tree.controls import BranchNode
 from navette.navigation.missions.tree.decorators import DecoratorNode
 from navette.navigation.missions.tree.ports import KINDS as PORT_KINDS
@@ -229,6 +234,10 @@ def _kind_of(element: XmlNode) -> tuple[str, Kind]:
     base = CATEGORIES.get(element.tag)
     tag = element.tag if base is None else element.need_attribute("ID")
     kind = KINDS.get(tag)
+    if tag in NO_SERVER:
+        raise element.error(
+            f"{tag} needs {NO_SERVER[tag]}, which Navette does not have"
+        )
     if kind is None:
         near = difflib.get_close_matches(tag, KINDS, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
