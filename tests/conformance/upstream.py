@@ -2,9 +2,10 @@
 
     python tests/conformance/upstream.py FOLDER… [--suite NAME] [--failures FILE]
 
-Each FOLDER is a checkout of ros2/launch, ros2/launch_ros, ros2/message_filters or
-ros2/rosidl_runtime_py (branch jazzy); the suites import osrf-pycommon from PyPI. Prints
-a line for each suite: tests that pass, tests that fail for a reason listed in
+Each FOLDER is a checkout (branch jazzy) of ros2/launch, ros2/launch_ros,
+ros2/message_filters, ros2/rosidl_runtime_py or ros2/rcl_interfaces (which has values of
+messages for the former); the suites import osrf-pycommon from PyPI. Prints a line for
+each suite: tests that pass, tests that fail for a reason listed in
 ``upstream_failures.toml``, and others. Exits with 1 where a test fails without a listed
 reason, or passes although it is listed. None of the suites is part of this repository.
 """
@@ -33,6 +34,8 @@ SUITES = {
     "message_filters": "test",
     "rosidl_runtime_py": "test/rosidl_runtime_py",
 }
+#: In a checkout of ros2/rcl_interfaces: values of messages, for rosidl_runtime_py.
+_FIXTURES = Path("test_msgs/src")
 LINTERS = ("copyright", "flake8", "pep257", "mypy", "xmllint")
 #: Seconds a test may take, and a suite.
 TEST_TIMEOUT_S, SUITE_TIMEOUT_S = 60, 900
@@ -68,8 +71,12 @@ def _contains(folder: Path, package: str) -> bool:
     return ElementTree.parse(manifest).findtext("name") == package
 
 
-def run_suite(folder: Path) -> Outcome:
-    """Run the tests of one folder in a pytest of their own."""
+def run_suite(folder: Path, search: list[Path]) -> Outcome:
+    """Run the tests of one folder in a pytest of their own.
+
+    Args:
+        search: folders of modules that the tests import.
+    """
     with tempfile.TemporaryDirectory(prefix="navette_upstream_") as scratch:
         report = Path(scratch) / "report.xml"
         command = [
@@ -86,7 +93,7 @@ def run_suite(folder: Path) -> Outcome:
             cwd=folder,
             env=os.environ
             | {
-                "PYTHONPATH": str(folder.parent),  # modules that tests share
+                "PYTHONPATH": os.pathsep.join(map(str, [folder.parent, *search])),
                 "PYTHONDONTWRITEBYTECODE": "1",
                 "ROS_LOG_DIR": scratch,
             },
@@ -140,10 +147,11 @@ def main() -> int:
     if not suites:
         parser.error(f"no suite in {', '.join(map(str, options.folders))}")
     differences, tracebacks = [], []
+    extra = [each.resolve() / _FIXTURES for each in options.folders]
     for name, folder in suites.items():
         if options.suite and name not in options.suite:
             continue
-        outcome = run_suite(folder)
+        outcome = run_suite(folder, [each for each in extra if each.is_dir()])
         differences += report_suite(name, outcome, reasons.get(name, {}))
         tracebacks += [f"=== {test}\n{text}" for test, text in outcome.failed.items()]
     if options.failures:

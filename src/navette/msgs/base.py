@@ -8,6 +8,7 @@ import numpy as np
 
 from navette.errors import MessageError
 from navette.msgs.interface import Field, FieldType, MessageSpec, short_name
+from navette.msgs.slot_types import SlotTypes
 
 
 class _Default:
@@ -34,7 +35,7 @@ class Message:
     _type_name_: ClassVar[str]
     _field_types_: ClassVar[dict[str, str]]
     _make_default_: ClassVar[Callable[[], Any]]
-    SLOT_TYPES: ClassVar[tuple[FieldType, ...]]
+    SLOT_TYPES = SlotTypes()
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -154,7 +154,6 @@ def _make_message(spec: MessageSpec) -> type[Message]:
         "_type_name_": spec.name,
         "_field_types_": {field.name: idl_type(field.type) for field in spec.fields},
         "_make_default_": staticmethod(scope["_make_default"]),
-        "SLOT_TYPES": tuple(field.type for field in spec.fields),
     }
     namespace |= {constant.name: constant.value for constant in spec.constants}
     for index, field in enumerate(spec.fields):

@@ -24,6 +24,7 @@ from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.sensor_msgs.msg import CameraInfo, LaserScan, NavSatStatus
+from navette.msgs.slot_types import BasicType, NamespacedType, UnboundedSequence
 from navette.msgs.std_msgs.msg import ByteMultiArray, Empty, Header, String
 
 
@@ -111,7 +112,9 @@ def test_types_of_fields_are_spelt_as_in_rclpy() -> None:
     assert types["covariance"] == "double[36]"
     assert LaserScan.get_fields_and_field_types()["ranges"] == "sequence<float>"
     assert DiagnosticStatus.get_fields_and_field_types()["level"] == "octet"
-    assert [str(each) for each in LaserScan.SLOT_TYPES[-2:]] == ["float32[]"] * 2
+    floats = UnboundedSequence(BasicType("float"))
+    assert LaserScan.SLOT_TYPES[-2:] == (floats, floats)
+    assert LaserScan.SLOT_TYPES[0] == NamespacedType(("std_msgs", "msg"), "Header")
     assert [each.name for each in fields(Quaternion)] == ["x", "y", "z", "w"]
 
 

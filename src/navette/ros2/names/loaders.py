@@ -1,6 +1,7 @@
 """Loaders of the modules that have ROS 2's names and Navette's contents."""
 
 import importlib
+import re
 from abc import abstractmethod
 from functools import cache
 from importlib.abc import Loader
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from navette.msgs import get_interface
 from navette.msgs.lazy import module_contents
 from navette.msgs.registry import KINDS, interface_names
 from navette.ros2.names.rclpy_names import rclpy_modules
@@ -139,7 +141,13 @@ class PackageLoader(_LazyLoader):
         super().exec_module(module)
 
     def names(self) -> list[str]:
-        return sorted(set(_public_names(self._real)) - self.submodules())
+        # A submodule may have the name of what its package takes from it.
+        hidden = {
+            name
+            for name in self.submodules()
+            if isinstance(getattr(self._real, name, None), ModuleType)
+        }
+        return sorted(set(_public_names(self._real)) - hidden)
 
     def submodules(self) -> frozenset[str]:
         path = Path(getattr(self._real, "__file__", None) or "")
@@ -197,11 +205,48 @@ class InterfaceLoader(Ros2Loader):
         namespace.update(__getattr__=get, __dir__=listed, __all__=names)
 
     def child(self, name: str) -> Ros2Loader | None:
+        for each in self.contents():
+            if name == f"_{_module_name(each)}":
+                return DefinitionLoader(f"{self.name}.{name}", each)
         return None
 
     def contents(self) -> list[str]:
         package, kind = self.name.split(".")
         return interface_names(package, kind)
+
+
+class DefinitionLoader(Ros2Loader):
+    """Loader of ``std_msgs.msg._string``: the classes of one definition.
+
+    ROS 2 generates such modules, and editors import from them.
+    """
+
+    def __init__(self, name: str, interface: str) -> None:
+        super().__init__(name)
+        self._interface = interface
+
+    def exec_module(self, module: ModuleType) -> None:
+        vars(module).update(self._classes())
+
+    def child(self, name: str) -> Ros2Loader | None:
+        return None
+
+    def contents(self) -> list[str]:
+        return list(self._classes())
+
+    def _classes(self) -> dict[str, Any]:
+        package, kind, _ = self.name.split(".")
+        main = get_interface(f"{package}/{kind}/{self._interface}")
+        scopes = [main, getattr(main, "Impl", None)]
+        parts = [each for scope in scopes for each in vars(scope or object).values()]
+        named = [part for part in parts if isinstance(part, type)]
+        return {each.__name__: each for each in (main, *named) if each is not type}
+
+
+def _module_name(interface: str) -> str:
+    """Return the name of the module of an interface: ``LaserScan``: ``laser_scan``."""
+    spaced = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", spaced).lower()
 
 
 @cache

@@ -12,9 +12,10 @@ _ROS_2 = {
     "ament_copyright": "leave the linters' tests out",
     "ament_flake8": "leave the linters' tests out",
     "ament_pep257": "leave the linters' tests out",
-    "launch_testing": "start programs with launch.LaunchService or subprocess in a "
-    "pytest test",
-    "ros2cli": "navette's commands do the same: navette --help",
+    "ros2node": "navette's commands do the same: navette node --help",
+    "ros2param": "navette's commands do the same: navette param --help",
+    "ros2service": "navette's commands do the same: navette service --help",
+    "xacro": "pip install xacro, or navette[xacro]",
 }
 
 

@@ -88,7 +88,7 @@ def test_a_traceback_starts_in_the_program(
     ("line", "expected"),
     [
         ("import rospy", "docs/reference/idioms.md"),
-        ("import launch_testing", "LaunchService"),
+        ("import ros2param", "navette param"),
         ("from fleet_msgs.msg import Truck", "NAVETTE_INTERFACE_PATH"),
     ],
 )

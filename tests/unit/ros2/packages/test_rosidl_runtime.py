@@ -172,7 +172,7 @@ def test_stamps_that_are_set_later() -> None:
         ({"point": {"w": 1}}, AttributeError, "Point has no field 'w'.*x, y, z"),
         ({"point": {"x": "one"}}, TypeError, "x"),
         ({"point": [1, 2, 3]}, TypeError, "expected to be a dictionary but is a list"),
-        ("text", TypeError, "PointStamped is expected to be a dictionary"),
+        ("text", TypeError, "is expected to be a dictionary"),
     ],
 )
 def test_wrong_values(values: Any, error: type[Exception], message: str) -> None:

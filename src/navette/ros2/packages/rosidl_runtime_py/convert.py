@@ -14,6 +14,7 @@ import numpy as np
 
 from navette.msgs import Message
 from navette.msgs.interface import FieldType
+from navette.msgs.slot_types import IDL_NAMES, AbstractType
 from navette.ros2.packages.rosidl_runtime_py.number_text import (
     CUT,
     Layout,
@@ -21,9 +22,6 @@ from navette.ros2.packages.rosidl_runtime_py.number_text import (
     python_words,
 )
 from navette.ros2.packages.rosidl_runtime_py.yaml_text import yaml_text
-
-_IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8"}
-_IDL_NAMES |= {"float32": "float", "float64": "double"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,8 +105,10 @@ def message_to_ordereddict(
     return ordered
 
 
-def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
-    return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
+def get_message_slot_types(msg: Message) -> "OrderedDict[str, AbstractType]":
+    """Return the types of the fields by name, as ``rosidl_parser`` names them."""
+    names = msg.get_fields_and_field_types()
+    return OrderedDict(zip(names, msg.SLOT_TYPES, strict=True))
 
 
 def _ordered(value: Any) -> Any:
@@ -122,8 +122,10 @@ def _ordered(value: Any) -> Any:
 
 
 def _fields(msg: Message, shortening: _Shortening) -> dict[str, Any]:
-    types = zip(msg._field_types_, msg.SLOT_TYPES, strict=True)
-    return {name: _plain(getattr(msg, name), shortening, t) for name, t in types}
+    return {
+        field.name: _plain(getattr(msg, field.name), shortening, field.type)
+        for field in msg._spec_.fields
+    }
 
 
 def _plain(
@@ -156,7 +158,7 @@ def _csv(
     value: Any, shortening: _Shortening, field_type: FieldType | None = None
 ) -> str:
     if isinstance(value, Message):
-        types = get_message_slot_types(value)
+        types = {field.name: field.type for field in value._spec_.fields}
         return ",".join(
             _csv(getattr(value, name), shortening, t) for name, t in types.items()
         )
@@ -190,7 +192,7 @@ def _hidden_text(value: str) -> str:
 
 
 def _hidden_array(field_type: FieldType, length: int) -> str:
-    base = _IDL_NAMES.get(field_type.base, field_type.base)
+    base = IDL_NAMES.get(field_type.base, field_type.base)
     if field_type.container == "array":
         return f"<array type: {base}[{field_type.size}]>"
     bound = "" if field_type.size is None else f"[{field_type.size}]"

@@ -8,6 +8,8 @@ from navette.errors import InvalidNameError, UnknownNameError
 from navette.ros2.workspace import find_package, find_packages
 from navette.ros2.workspace.package import INTERFACE_KINDS
 
+_PROVIDED = Path(__file__).parent.parent
+
 
 def get_interface_packages() -> dict[str, str]:
     """Return the prefixes of the packages that define interfaces, by name."""
@@ -82,6 +84,8 @@ def _loaded(package: str, kinds: tuple[str, ...]) -> list[str]:
 
 
 def _in_files(package: str, kinds: tuple[str, ...]) -> list[str]:
+    if (_PROVIDED / package).is_dir():
+        return []
     share = find_package(package).share
     return [
         f"{kind}/{file.stem}"

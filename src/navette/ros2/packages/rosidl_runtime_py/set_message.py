@@ -7,8 +7,15 @@ from typing import Any
 from navette.errors import MessageError
 from navette.msgs import Message, get_interface
 from navette.msgs.builtin_interfaces.msg import Time
-from navette.msgs.interface import FieldType
+from navette.msgs.slot_types import (
+    AbstractGenericString,
+    AbstractNestedType,
+    AbstractType,
+    BasicType,
+    NamespacedType,
+)
 from navette.msgs.std_msgs.msg import Header
+from navette.ros2.packages.rosidl_runtime_py.convert import get_message_slot_types
 
 Setter = Callable[[Any], None]
 
@@ -56,16 +63,17 @@ class _Filling:
         self._setters = setters
 
     def fill(self, msg: Message, values: Mapping[str, Any]) -> None:
+        kind = getattr(msg, "_type_name_", type(msg).__name__)
         if not isinstance(values, Mapping):
             raise MessageError(
-                f"value {values!r} for {msg._type_name_} is expected to be a "
-                f"dictionary but is a {type(values).__name__}"
+                f"Value {values!r} is expected to be a dictionary but is a "
+                f"{type(values).__name__}"
             )
-        types = dict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
+        types = get_message_slot_types(msg)
         for name, value in values.items():
             if name not in types:
                 raise UnknownFieldError(
-                    f"{msg._type_name_} has no field {name!r}; its fields: "
+                    f"{kind} has no field {name!r}; its fields: "
                     f"{', '.join(types) or 'none'}"
                 )
             if not self._is_stamped_later(msg, name, value):
@@ -81,31 +89,31 @@ class _Filling:
             return True
         return False
 
-    def _converted(self, field_type: FieldType, value: Any) -> Any:
-        if field_type.is_message:
-            if field_type.is_scalar:
-                return self._message(field_type.base, value)
-            if isinstance(value, (list, tuple)):
-                return [self._message(field_type.base, item) for item in value]
+    def _converted(self, slot: AbstractType, value: Any) -> Any:
+        if isinstance(slot, NamespacedType):
+            return self._message(slot, value)
+        if isinstance(slot, AbstractNestedType):
+            item = slot.value_type
+            if isinstance(item, NamespacedType) and isinstance(value, (list, tuple)):
+                return [self._message(item, each) for each in value]
             return value
-        if field_type.is_scalar:
-            return _scalar(field_type.base, value)
-        return value
+        return _scalar(slot, value)
 
-    def _message(self, name: str, value: Any) -> Any:
+    def _message(self, slot: NamespacedType, value: Any) -> Any:
         if isinstance(value, Message):
             return value
-        message: Message = get_interface(name)()
+        message: Message = get_interface("/".join(slot.namespaced_name()))()
         self.fill(message, value)
         return message
 
 
-def _scalar(base: str, value: Any) -> Any:
-    if base in ("string", "wstring"):
+def _scalar(slot: AbstractType, value: Any) -> Any:
+    if isinstance(slot, AbstractGenericString):
         return value if isinstance(value, str) else str(value)
-    if not isinstance(value, str) or base in ("bool", "byte"):
+    typename = slot.typename if isinstance(slot, BasicType) else ""
+    if not isinstance(value, str) or typename in ("boolean", "octet"):
         return value
     try:
-        return float(value) if base.startswith("float") else int(value)
+        return float(value) if typename in ("float", "double") else int(value)
     except ValueError:
         return value  # setting the field raises the error

@@ -4,6 +4,7 @@ from typing import Any
 
 from navette import msgs
 from navette.errors import InvalidNameError, UnknownNameError
+from navette.msgs.slot_types import NamespacedType
 
 
 class UnknownInterfaceError(UnknownNameError, AttributeError):
@@ -55,6 +56,28 @@ def is_action(interface: Any) -> bool:
     return all(hasattr(interface, name) for name in ("Goal", "Result", "Feedback"))
 
 
+def get_message_namespaced_type(identifier: str) -> NamespacedType:
+    """Return the NamespacedType of a message; accepts ``pkg/Name``."""
+    return _namespaced(identifier, "msg")
+
+
+def get_service_namespaced_type(identifier: str) -> NamespacedType:
+    return _namespaced(identifier, "srv")
+
+
+def get_action_namespaced_type(identifier: str) -> NamespacedType:
+    return _namespaced(identifier, "action")
+
+
+def _namespaced(identifier: str, kind: str) -> NamespacedType:
+    parts = identifier.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or not all(parts) or parts[1] != kind:
+        raise InvalidNameError(f"{identifier!r}: expected 'package/{kind}/Name'")
+    return NamespacedType(parts[:2], parts[2])
+
+
 _TESTS = {"msg": is_message, "srv": is_service, "action": is_action}
 
 
@@ -64,6 +87,6 @@ def _of_kind(identifier: str, kind: str, expected: str) -> Any:
     interface = get_interface(full)
     if not _TESTS[kind](interface):
         raise InvalidNameError(
-            f"expected the full name of {expected}, got {identifier!r}"
+            f"Expected the full name of {expected}, got {identifier!r}"
         )
     return interface
