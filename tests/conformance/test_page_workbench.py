@@ -148,8 +148,8 @@ def test_panels_display_data_and_control_the_run(person: Person) -> None:
     # While paused time does not advance; a step of the panel is 100 ms.
     assert seen["whilePaused"] == 0
     assert seen["step"] == 100_000_000
-    grown, anew = seen["afterReset"]
-    assert anew < grown
+    grown, restarted = seen["afterReset"]
+    assert restarted < grown
 
 
 @pytest.mark.slow

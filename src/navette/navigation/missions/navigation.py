@@ -34,7 +34,7 @@ from navette.navigation.missions.tree_run import StatusChange, TreeRun
 PREEMPTED_TEXT = "preempted by a newer goal"
 # A robot that does not stop within this time has another problem.
 _REST_TIMEOUT_NS = 5_000_000_000
-# A robot that has just started knows its pose a moment after its first goal.
+# The pose of a robot that has just started is known a moment later.
 _POSE_TIMEOUT_NS = 2_000_000_000
 _LEAST_SPEED_MPS = 0.05
 _NAMES = {code: word for word, code in ERROR_CODES.items()}
