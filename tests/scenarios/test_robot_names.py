@@ -2,6 +2,7 @@
 
 import pytest
 
+from navette.errors import UnknownNameError
 from navette.navigation.stack.robot import simulate_robot
 from navette.navigation.stack.simulation import Simulation
 from navette.runtime import Context, VirtualClock
@@ -38,3 +39,24 @@ def test_a_burger_beside_a_program_has_its_names() -> None:
         topics = set(context.graph.topics())
     assert topics >= {"/scan", "/odom", "/cmd_vel"}
     assert not topics & STACK_NAMES
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ["jackal", "husky"])
+def test_clearpaths_robots_drive_with_their_names_of_ros1(
+    simulate: MakeSimulation, robot: str
+) -> None:
+    simulation = simulate(
+        world="empty", robot=f"{robot}:ros1", goals=((2.0, 0.5),), max_time_s=60.0
+    )
+    topics = topics_of(simulation)
+    assert topics >= {"/front/scan", "/odometry/filtered", "/imu/data", "/cmd_vel"}
+    assert not topics & STACK_NAMES
+    simulation.run()
+    assert simulation.summary().succeeded
+
+
+def test_unknown_names_of_a_robot_are_an_error(simulate: MakeSimulation) -> None:
+    expected = "topic names of jackal 'ros2'; known: ros1"
+    with pytest.raises(UnknownNameError, match=expected):
+        simulate(world="empty", robot="jackal:ros2")

@@ -92,17 +92,26 @@ def load_robot(name_or_path: str | Path) -> Robot:
     """Load a robot by name, or the one in an .sdf, .urdf or .yaml file.
 
     A name is that of a built-in robot, or of an entry point ``navette.robots`` of an
-    installed package: its file, or a function that returns it.
+    installed package: its file, or a function that returns it. ``jackal:ros1`` is the
+    built-in robot with the topic names of ``names_ros1.yaml``.
 
     Raises:
         UnknownNameError: neither a built-in name nor a file; lists the names.
         FileFormatError: the file is invalid or has no model with a drive.
     """
-    name = _SHORT_NAMES.get(str(name_or_path), str(name_or_path))
+    name, colon, variant = str(name_or_path).partition(":")
+    name = _SHORT_NAMES.get(name, name)
     if name in robot_names():
         folder = _ROBOTS / name
         model = _driven(read_sdf(folder / "model.sdf"), folder / "model.sdf")
-        return Robot(name, model, folder / "params.yaml", _topic_names(folder))
+        names = folder / "names.yaml"
+        if colon:
+            variants = sorted(each.stem[6:] for each in folder.glob("names_*.yaml"))
+            if variant not in variants:
+                raise UnknownNameError.of(f"topic names of {name}", variant, variants)
+            names = folder / f"names_{variant}.yaml"
+        return Robot(name, model, folder / "params.yaml", _topic_names(names))
+    name += colon + variant
     installed = _installed_robot(name)
     if installed is not None:
         return replace(load_robot(installed), name=name)
@@ -112,7 +121,7 @@ def load_robot(name_or_path: str | Path) -> Robot:
         return _described_robot(path)
     beside = path.parent / "params.yaml"
     params_file = beside if beside.is_file() else None
-    topic_names = _topic_names(path.parent)
+    topic_names = _topic_names(path.parent / "names.yaml")
     if path.suffix.lower() == ".urdf":
         model = read_urdf_robot(path)
         return Robot(model.name, model, params_file, topic_names)
@@ -130,7 +139,11 @@ def _described_robot(path: Path) -> Robot:
     if file.sizes is not None:
         model = _equipped(path, model_of(file.sizes), file)
         return Robot(
-            model.name, model, None, _topic_names(path.parent), file.parameters
+            model.name,
+            model,
+            None,
+            _topic_names(path.parent / "names.yaml"),
+            file.parameters,
         )
     assert file.model is not None, "a robot's file has sizes or a model"
     if not file.model.is_file():
@@ -165,13 +178,12 @@ def _installed_robot(name: str) -> Path | None:
     return None
 
 
-def _topic_names(folder: Path) -> dict[str, str]:
-    """Read ``names.yaml`` of a robot's folder; empty without the file.
+def _topic_names(path: Path) -> dict[str, str]:
+    """Read a robot's topic names by those of the stack; empty without the file.
 
     Raises:
         FileFormatError: the file is not a map from topic names to topic names.
     """
-    path = folder / "names.yaml"
     if not path.is_file():
         return {}
     try:
