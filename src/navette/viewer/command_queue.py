@@ -100,8 +100,8 @@ class CommandQueue:
 
     def _drop(self, lane: Hashable, name: Hashable) -> None:
         self._urgent.pop((lane, name), None)
-        commands = self._lanes.get(lane, {})
-        if commands.pop(name, None) is not None and not commands:
+        commands = self._lanes.get(lane)
+        if commands and commands.pop(name, None) is not None and not commands:
             del self._lanes[lane]
             self._turns.remove(lane)
 

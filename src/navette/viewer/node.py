@@ -28,6 +28,7 @@ from navette.errors import (
 )
 from navette.msgs import definition_text, get_interface, serialize
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
+from navette.msgs.sensor_msgs.msg import CompressedImage, Image
 from navette.params import Params
 from navette.runtime.client import Client
 from navette.runtime.clock import Stopwatch
@@ -44,6 +45,12 @@ from navette.runtime.subscription import Subscription
 from navette.viewer.access import Access
 from navette.viewer.assets import AssetFolders
 from navette.viewer.command_queue import CommandQueue
+from navette.viewer.compressed_images import (
+    COMPRESSED,
+    SUFFIX,
+    ImageCompressor,
+    compressed_ends,
+)
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.gate import Gate
 from navette.viewer.hub import Hub
@@ -101,10 +108,14 @@ class ViewerNode(StageNode):
         self._watched: dict[Watch, Subscription[Any]] = {}
         self._refreshing = False
         self._refreshed_s = -_REFRESH_S
+        self._compressed: set[str] = set()  # topics that are made here
         self._definitions: dict[str, str | None] = {}
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
         self._wall = Stopwatch()
+        self._images = ImageCompressor(
+            self.params.image_rate_hz, self._wall_s, self._note_image_problem
+        )
         self._commands = CommandQueue(
             partial(self.run_soon, source="command"),
             lambda delay_s, function: self._server.call_later(delay_s, function),
@@ -168,6 +179,7 @@ class ViewerNode(StageNode):
 
     def destroy_node(self) -> None:
         self._server.close()
+        self._images.close()
         self._stop_listening()
         self._stop_listening = _nothing
         super().destroy_node()
@@ -230,7 +242,10 @@ class ViewerNode(StageNode):
             )
             for endpoint in self.context.graph.endpoints()
         )
-        return [end for end in found if end.publishes or end.node != own]
+        ends = [end for end in found if end.publishes or end.node != own]
+        made = compressed_ends(ends, own)
+        self._compressed = {end.topic for end in made}
+        return ends + made
 
     def _servers(self) -> list[tuple[str, str, str]]:
         """Return name, type and node of each service that clients may need.
@@ -272,6 +287,9 @@ class ViewerNode(StageNode):
         """
         self.unwatch(watch)
         channel = watch.channel
+        if channel.topic in self._compressed and channel.type_name == COMPRESSED:
+            self._watched[watch] = self._compress(watch)
+            return
         try:
             self._watched[watch] = self.create_subscription(
                 get_interface(channel.type_name),
@@ -283,6 +301,20 @@ class ViewerNode(StageNode):
             )
         except NavetteError as error:  # the topic changed after it was advertised
             self.get_logger().warning(f"cannot watch {channel.topic}: {error}")
+
+    def _compress(self, watch: Watch) -> Subscription[Any]:
+        """Subscribe to a camera for a topic that the live view makes itself."""
+
+        def deliver(image: CompressedImage) -> None:
+            self._forward(watch, serialize(image))
+
+        return self.create_subscription(
+            Image,
+            watch.channel.topic.removesuffix(SUFFIX),
+            self._images.stream(deliver),
+            qos_profile_best_available,
+            shared=True,
+        )
 
     def unwatch(self, watch: Watch) -> None:
         subscription = self._watched.pop(watch, None)
@@ -437,6 +469,12 @@ class ViewerNode(StageNode):
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
         )
+
+    def _note_image_problem(self, problem: str) -> None:
+        def warn() -> None:
+            self.get_logger().warning(f"an image was not compressed: {problem}")
+
+        self.run_soon(warn, "image")
 
     def _note_refused_origin(self, reason: str) -> None:
         def warn() -> None:

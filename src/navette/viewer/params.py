@@ -30,6 +30,12 @@ class ViewerParams(Params):
     time_rate_hz: float = param(
         20.0, "rate at which clients receive the time", at_least=0.01, at_most=100.0
     )
+    image_rate_hz: float = param(
+        10.0,
+        "most images per second of a camera that clients receive compressed",
+        at_least=0.1,
+        at_most=100.0,
+    )
     allowed_origins: tuple[str, ...] = param(
         _FOXGLOVE,
         "web origins that may open the socket, besides the live view's own page; "

@@ -13,6 +13,7 @@ import { topicSelect, type TopicSelect } from "./topic_select";
 
 const RATES_HZ = [1, 5, 10, 30];
 const IMAGE = /\/(Image|CompressedImage)$/;
+const COMPRESSED = "/compressed";
 const DETECTIONS = /\/(Detection2DArray|Detection2D)$/;
 
 class ImagePanel implements PanelInstance {
@@ -28,6 +29,9 @@ class ImagePanel implements PanelInstance {
   #pixels: ImageData | null = null;
   #message: Message | null = null;
   #detections: readonly Box[] = [];
+  readonly #offTopics: Dispose;
+  /** The topic that is subscribed to. */
+  #from = "";
   #isVisible = false;
   #isDecoding = false;
   #failure = "";
@@ -38,7 +42,7 @@ class ImagePanel implements PanelInstance {
   ) {
     const { connection, settings } = context;
     this.#image = topicSelect(connection, { label: "Image topic", value: settings.get<string>("topic", ""), takesFirst: true,
-      accepts: ({ type }) => IMAGE.test(type),
+      accepts: ({ name, type }) => IMAGE.test(type) && !this.#isCompressedTwin(name),
       onChange: (topic) => {
         settings.set("topic", topic);
         nextFrame(() => this.#subscribe());
@@ -59,7 +63,10 @@ class ImagePanel implements PanelInstance {
     this.#frame = h("div", { class: "image-frame" }, this.#canvas, this.#boxes);
     container.append(h("div", { class: "panel" }, h("div", { class: "bar" }, this.#image.element, this.#overlay.element, this.#rate, save),
       h("div", { class: "body image-body" }, this.#frame, this.#facts, this.#empty.element)));
-    this.#subscriptions.push();
+    // The server's compressed pictures can be announced later than the panel is opened.
+    this.#offTopics = connection.on("topics", () => {
+      if (this.#isVisible && this.#image.value && this.#source(this.#image.value) !== this.#from) nextFrame(() => this.#subscribe());
+    });
     this.#showEmpty();
   }
 
@@ -70,9 +77,20 @@ class ImagePanel implements PanelInstance {
 
   dispose = (): void => {
     this.#end();
+    this.#offTopics();
     this.#image.dispose();
     this.#overlay.dispose();
   };
+
+  /** The server's compressed pictures of a camera, if it makes them. */
+  #source(topic: string): string {
+    const twin = this.context.connection.topics.get(topic + COMPRESSED);
+    return twin?.isPublished && /\/Image$/.test(this.context.connection.topics.get(topic)?.type ?? "") ? twin.name : topic;
+  }
+
+  #isCompressedTwin(name: string): boolean {
+    return name.endsWith(COMPRESSED) && this.context.connection.topics.get(name.slice(0, -COMPRESSED.length))?.isPublished === true;
+  }
 
   #end(): void {
     for (const end of this.#subscriptions.splice(0)) end();
@@ -83,11 +101,12 @@ class ImagePanel implements PanelInstance {
     const { connection } = this.context;
     const [topic, overlay] = [this.#image.value, this.#overlay.value];
     this.context.setTitle(topic || "Image");
-    if (this.#message?.topic !== topic) this.#message = null;
+    if (this.#message && this.#message.topic !== this.#source(topic)) this.#message = null;
     if (!overlay) this.#detections = [];
     if (this.#isVisible && topic) {
       const rateHz = Number(this.#rate.value);
-      this.#subscriptions.push(connection.subscribe(topic, { rateHz }, (message) => {
+      this.#from = this.#source(topic);
+      this.#subscriptions.push(connection.subscribe(this.#from, { rateHz }, (message) => {
         this.#message = message;
         nextFrame(this.#draw);
       }));
