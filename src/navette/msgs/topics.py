@@ -62,6 +62,7 @@ MAP_POINTS = StackTopic("/map/points", "sensor_msgs/msg/PointCloud2", 1, True)
 STATIC_MAP = StackTopic("/static_map", "nav_msgs/msg/OccupancyGrid", 1, True)
 TRAJECTORY = StackTopic("/trajectory", "nav_msgs/msg/Path", 1, True)
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
+MAP_UPDATES = StackTopic("/map_updates", "map_msgs/msg/OccupancyGridUpdate")
 LOCAL_COSTMAP = StackTopic(
     "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
 )
@@ -71,6 +72,9 @@ LOCAL_FOOTPRINT = StackTopic(
 TRAJECTORIES = StackTopic("/trajectories", "visualization_msgs/msg/MarkerArray", 1)
 GLOBAL_COSTMAP = StackTopic(
     "/global_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
+)
+GLOBAL_COSTMAP_UPDATES = StackTopic(
+    "/global_costmap/costmap_updates", "map_msgs/msg/OccupancyGridUpdate"
 )
 TRACKED_OBSTACLES = StackTopic(
     "/tracked_obstacles", "nav2_dynamic_msgs/msg/ObstacleArray", 1

@@ -38,7 +38,12 @@ from navette.navigation.grids.hit_points import (
 )
 from navette.navigation.grids.inflation import cost_table, inflate
 from navette.navigation.grids.merge import merge
-from navette.navigation.grids.messages import grid_from_message, grid_to_message
+from navette.navigation.grids.messages import (
+    grid_from_message,
+    grid_to_message,
+    window_from_message,
+    window_to_message,
+)
 from navette.navigation.grids.moving_discs import (
     NO_DISCS,
     MovingDiscs,
@@ -142,5 +147,7 @@ __all__ = [
     "points_by_cell",
     "point_radius",
     "grid_to_message",
+    "window_from_message",
+    "window_to_message",
     "grid_from_message",
 ]

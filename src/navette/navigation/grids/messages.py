@@ -1,4 +1,4 @@
-"""Conversion of grids from and to nav_msgs/OccupancyGrid."""
+"""Conversion of grids from and to messages: whole grids and windows of them."""
 
 import numpy as np
 
@@ -6,10 +6,12 @@ from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion
+from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
 from navette.msgs.std_msgs.msg import Header
 from navette.navigation.grids.checks import grid_array
 from navette.navigation.grids.spec import Cells, GridSpec
+from navette.navigation.grids.windows import CellWindow
 
 
 def grid_to_message(
@@ -21,7 +23,7 @@ def grid_to_message(
         InvalidValueError: ``cells`` does not have the spec's shape.
     """
     data = grid_array("cells", cells, np.int8, spec).reshape(-1)
-    stamp = Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
+    stamp = _stamp(stamp_ns)
     x, y, z, w = quaternion_from_yaw(spec.origin.yaw)
     origin = Pose(
         position=Point(x=float(spec.origin.x), y=float(spec.origin.y)),
@@ -61,3 +63,47 @@ def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
             f"{spec.height} = {spec.width * spec.height}"
         )
     return cells.reshape(spec.shape), spec
+
+
+def window_to_message(
+    cells: Cells, window: CellWindow, frame_id: str, stamp_ns: int
+) -> OccupancyGridUpdate:
+    """Return a message with a copy of the window of ``cells`` (H, W)."""
+    height, width = window.shape
+    return OccupancyGridUpdate(
+        header=Header(stamp=_stamp(stamp_ns), frame_id=frame_id),
+        x=window.first_column,
+        y=window.first_row,
+        width=width,
+        height=height,
+        data=cells[window.slices].reshape(-1),
+    )
+
+
+def window_from_message(
+    msg: OccupancyGridUpdate, spec: GridSpec
+) -> tuple[Cells, CellWindow]:
+    """Return the cells (h, w), a view of the message's data, and where they belong.
+
+    Raises:
+        InvalidValueError: the size does not match the data, or the window is not
+            within the grid.
+    """
+    window = CellWindow(msg.y, msg.y + msg.height, msg.x, msg.x + msg.width)
+    cells = np.asarray(msg.data)
+    if cells.size != msg.width * msg.height:
+        raise InvalidValueError(
+            f"grid update: {cells.size} cells, expected {msg.width} x {msg.height} = "
+            f"{msg.width * msg.height}"
+        )
+    if window.grown(0, spec.shape) != window:
+        raise InvalidValueError(
+            f"grid update: columns {window.first_column} to {window.last_column}, rows "
+            f"{window.first_row} to {window.last_row}; the grid has {spec.width} x "
+            f"{spec.height} cells"
+        )
+    return cells.reshape(window.shape), window
+
+
+def _stamp(stamp_ns: int) -> Time:
+    return Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)

@@ -19,6 +19,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
     NO_DISCS,
+    CellWindow,
     GridSpec,
     HitPoints,
     MovingDiscs,
@@ -29,6 +30,7 @@ from navette.navigation.grids import (
     inside_discs,
     placed,
     points_to_message,
+    window_to_message,
     without_discs,
 )
 from navette.navigation.grids.spec import Cells
@@ -110,8 +112,16 @@ class MapMemoryNode(StageNode):
             "the loaded map, as it is; only if one is loaded",
         ),
         Output.of(
+            topics.MAP_UPDATES,
+            "the part of the map that changed, while somebody subscribes",
+        ),
+        Output.of(
             topics.GLOBAL_COSTMAP,
             "the map, under Nav2's name",
+        ),
+        Output.of(
+            topics.GLOBAL_COSTMAP_UPDATES,
+            "the part of it that changed, under Nav2's name",
         ),
     )
 
@@ -124,7 +134,7 @@ class MapMemoryNode(StageNode):
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
         source = CostmapSource(
-            grid=lambda: self._published,
+            grid=lambda: self._whole_map(),
             clear=self._clear,
             frame_on_grid=lambda frame_id: self._tracker.frame_on_map(frame_id),
             robot_frame=lambda: self.params.base_frame,
@@ -136,7 +146,7 @@ class MapMemoryNode(StageNode):
                 self.resolve_topic_name(each.name)
                 for each in (topics.MAP, topics.GLOBAL_COSTMAP)
             ),
-            newest=lambda: self._published,
+            newest=lambda: self._whole_map(),
             load=self._load,
             is_probability=lambda: self.params.fusion == "log_odds",
         )
@@ -199,6 +209,8 @@ class MapMemoryNode(StageNode):
         """Fuse the newest costmap if the robot moved far enough."""
         if self._newest is not None and self._gate.on_timer(self._newest):
             self._fuse(self._newest)
+        elif self._whole_ns < self._map_ns and self._subscribers() > self._served:
+            self._publish_whole()  # to subscribers that came since
 
     def on_params_changed(self, old: MapMemoryParams) -> None:
         """Reset the map if its shape changed; other values apply at once."""
@@ -243,6 +255,8 @@ class MapMemoryNode(StageNode):
         self._newest: PlacedCostmap | None = None
         self._keyframes = Keyframes()
         self._last_stamp_ns = 0
+        self._published: OccupancyGrid | None = None  # None: not built yet
+        self._map_ns = self._whole_ns = self._served = 0
         self._publish_map(self._now_ns())
 
     def _relocate(self) -> None:
@@ -332,10 +346,48 @@ class MapMemoryNode(StageNode):
         memory, frame_id = self._memory, self.params.map_frame
         points = points_to_message(memory.hit_points(), frame_id, stamp_ns)
         self.hand_over(topics.MAP_POINTS.name, points)
-        message = grid_to_message(memory.cells, memory.spec, frame_id, stamp_ns)
-        self._published = message
+        window = memory.take_change()
+        is_update = window is not None and stamp_ns > self._map_ns
+        self._map_ns, self._published = stamp_ns, None
+        if window is not None and is_update and not window.is_empty:
+            self._publish_update(window)
+        is_served = is_update and self._subscribers() <= self._served
+        if self.params.always_send_full_map or not is_served:
+            self._publish_whole()
+
+    def _publish_update(self, window: CellWindow) -> None:
+        """Publish the changed part before the whole map of the same stamp."""
+        names = (topics.MAP_UPDATES.name, topics.GLOBAL_COSTMAP_UPDATES.name)
+        listened = [name for name in names if self.has_listeners(name)]
+        if listened:
+            cells, frame_id = self._memory.cells, self.params.map_frame
+            update = window_to_message(cells, window, frame_id, self._map_ns)
+            for name in listened:
+                self.hand_over(name, update)
+
+    def _publish_whole(self) -> None:
+        self._served, self._whole_ns = self._subscribers(), self._map_ns
+        message = self._whole_map()
         self.hand_over(topics.MAP.name, message)
         self.hand_over(topics.GLOBAL_COSTMAP.name, message)
+
+    def _whole_map(self) -> OccupancyGrid:
+        """Return the map as it was last published, or updated."""
+        if self._published is None:
+            memory, frame_id = self._memory, self.params.map_frame
+            cells = memory.cells
+            self._published = grid_to_message(
+                cells, memory.spec, frame_id, self._map_ns
+            )
+        return self._published
+
+    def _subscribers(self) -> int:
+        """Return the number of subscriptions to the whole map."""
+        publishers = self.publishers_by_topic
+        return sum(
+            publishers[each.name].get_subscription_count()
+            for each in (topics.MAP, topics.GLOBAL_COSTMAP)
+        )
 
     def _load(self, cells: Cells, spec: GridSpec) -> None:
         """Replace the map by a loaded one; scans change it from now on."""

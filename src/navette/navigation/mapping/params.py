@@ -34,6 +34,11 @@ class MapMemoryParams(FrameParams):
         "there are too far apart to measure that a cell is free",
         at_least=0.0,
     )
+    always_send_full_map: bool = param(
+        True,
+        "publish the whole map at each update; otherwise only if its extent changed or "
+        "a subscriber came, and the changed part on /map_updates",
+    )
     update_period_s: float = param(
         1.0, "period of checking whether the robot moved far enough", at_least=0.001
     )

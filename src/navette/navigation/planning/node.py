@@ -22,6 +22,7 @@ from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
+from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
@@ -33,11 +34,11 @@ from navette.msgs.std_srvs.srv import (
 )
 from navette.navigation.grids import (
     NO_DISCS,
-    GridSpec,
     HitPoints,
     MovingDiscs,
     discs_from_message,
     grid_from_message,
+    window_from_message,
 )
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.zones import KeepOutZones
@@ -46,6 +47,7 @@ from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.planning_grid import NO_HITS
+from navette.navigation.planning.received_map import MapPart, ReceivedMap
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
 from navette.navigation.planning.servers.smoother_server import SmootherServer
@@ -90,6 +92,11 @@ class PlannerNode(StageNode):
             topics.MAP,
             "map of everything seen so far",
             callback="on_map",
+        ),
+        Input.of(
+            topics.MAP_UPDATES,
+            "the part of the map that changed",
+            callback="on_map_update",
         ),
         Input.of(
             topics.MAP_POINTS,
@@ -179,9 +186,10 @@ class PlannerNode(StageNode):
         self._unlocated: Outcome | Phase | None = None
         self._relocated_ns: int | None = None
         self._zones: KeepOutZones | None = None
-        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._map: ReceivedMap | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._map_ns = 0
+        self._updated_ns: int | None = None  # stamp of the newest update
         self._hits = HitPoints()
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
         self._logged = self._fault = ""
@@ -233,8 +241,24 @@ class PlannerNode(StageNode):
             occupancy, spec = grid_from_message(msg)
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
-        self._map, self._map_ns = (occupancy, spec), stamp_to_ns(msg.header.stamp)
+        stamp_ns, known = stamp_to_ns(msg.header.stamp), self._map
+        if known is not None and known.spec == spec and stamp_ns == self._updated_ns:
+            return  # the update with this stamp has arrived
+        self._map, self._map_ns = ReceivedMap(occupancy, spec), stamp_ns
         self._apply_map()
+
+    def on_map_update(self, msg: OccupancyGridUpdate) -> None:
+        """Change a part of the map; a path that it blocks is replaced at once."""
+        check_frame("map update", msg.header.frame_id, self.params.map_frame)
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if self._map is None or stamp_ns <= self._map_ns:
+            return  # the whole map is newer, or follows
+        try:
+            part = MapPart(*window_from_message(msg, self._map.spec))
+        except InvalidValueError as error:
+            raise InvalidInputError("out_of_range", str(error)) from None
+        self._map_ns = self._updated_ns = stamp_ns
+        self._apply_map(part)
 
     def on_keepout_zones(self, msg: OccupancyGrid) -> None:
         """Plan around zones; a path through them is replaced at once."""
@@ -260,14 +284,16 @@ class PlannerNode(StageNode):
         hits = self._hits.at(self._map_ns)
         return NO_HITS if hits is None else hits
 
-    def _apply_map(self) -> None:
+    def _apply_map(self, part: MapPart | None = None) -> None:
         assert self._map is not None, "called with a map"
-        (occupancy, spec), hits = self._map, self._newest_hits()
+        received, hits = self._map, self._newest_hits()
 
         def apply() -> None:
             if self._worker.is_busy:  # with a request, or a step that was dropped
                 self._navigator.planner.detach()
-            self._navigator.set_map(occupancy, spec, hits)
+                received.share()
+            changed = received.update(part)
+            self._navigator.set_map(received.cells, received.spec, hits, changed)
 
         self._when_stepped(apply)
         self.on_timer()
@@ -454,7 +480,8 @@ class PlannerNode(StageNode):
         if was_paused:
             self._navigator.pause(self._now_ns)
         if self._map is not None:
-            self._navigator.set_map(*self._map, self._newest_hits())
+            cells, spec = self._map.cells, self._map.spec
+            self._navigator.set_map(cells, spec, self._newest_hits())
         if self._zones is not None:
             self._navigator.keep_out(self._zones)
         if had_path:

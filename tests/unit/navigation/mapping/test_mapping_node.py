@@ -19,7 +19,12 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.navigation.grids import GridSpec, grid_from_message, grid_to_message
+from navette.navigation.grids import (
+    GridSpec,
+    grid_from_message,
+    grid_to_message,
+    window_from_message,
+)
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter, ns_to_stamp
 from navette.testing import GraphHarness, Probe
@@ -291,3 +296,70 @@ def test_only_shape_parameters_reset_the_map() -> None:
 def test_wrong_parameters_are_refused() -> None:
     with GraphHarness() as graph, pytest.raises(ParameterError, match="fusion"):
         Rig(graph, fusion="mean")
+
+
+def updates(rig: Rig, topic: str = "/map_updates") -> Probe:
+    return rig.graph.collect(topic, "map_msgs/msg/OccupancyGridUpdate")
+
+
+def drive(rig: Rig, steps: int) -> None:
+    for step in range(steps):
+        stamp_ns = (step * 200 + 50) * MS
+        rig.odometry(0.5 * step, 0.1 * step, stamp_ns)
+        rig.costmap(with_post(1.0, 0.1 * step), stamp_ns)
+        rig.run_ms(200)
+
+
+@pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
+def test_updates_applied_to_an_older_map_give_the_newest(fusion: str) -> None:
+    with GraphHarness() as graph:
+        rig = Rig(graph, update_distance_m=0.1, update_period_s=0.1, fusion=fusion)
+        parts = updates(rig)
+        others = updates(rig, "/global_costmap/costmap_updates")
+        rig.run_ms(10)
+        cells, spec = grid_from_message(rig.maps.last)
+        cells = cells.copy()
+        drive(rig, 8)
+        whole, after = grid_from_message(rig.maps.last)
+        assert after == spec
+        assert rig.maps.count - 1 == parts.count == others.count >= 5
+        for part in parts.messages:
+            new, window = window_from_message(part, spec)
+            cells[window.slices] = new
+            assert new.size < 0.5 * cells.size
+        np.testing.assert_array_equal(cells, whole)
+        assert parts.last.header == rig.maps.last.header
+
+
+def test_a_map_that_grows_is_published_whole_only() -> None:
+    with GraphHarness() as graph:
+        rig = Rig(graph, size_m=2.0, growth_m=2.0)
+        parts = updates(rig)
+        rig.run_ms(10)
+        rig.odometry(0.0, 0.0, 50 * MS)
+        rig.costmap(with_post(1.0, 0.5), 50 * MS)
+        rig.run_ms(50)
+        assert rig.maps.count == 2
+        assert parts.count == 0
+
+
+def test_whole_maps_are_published_to_new_subscribers_only() -> None:
+    with GraphHarness() as graph:
+        rig = Rig(
+            graph,
+            update_distance_m=0.1,
+            update_period_s=0.1,
+            always_send_full_map=False,
+        )
+        parts = updates(rig)
+        rig.run_ms(10)
+        before = rig.maps.count
+        drive(rig, 8)
+        # Once whole, to the subscription that is newer than the first map.
+        assert rig.maps.count == before + 1
+        assert parts.count >= 5
+        late = graph.collect("/map", "nav_msgs/msg/OccupancyGrid", latched=True)
+        rig.run_ms(1500)
+        assert late.last.header == parts.last.header
+        assert rig.maps.count == before + 2
+        assert len(rig.lethal()) == 1

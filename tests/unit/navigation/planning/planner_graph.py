@@ -12,7 +12,8 @@ from navette.msgs.geometry_msgs.msg import (
     Quaternion,
 )
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.navigation.grids import grid_to_message
+from navette.navigation.grids import CellWindow, grid_to_message, window_to_message
+from navette.navigation.grids.spec import Cells
 from navette.navigation.planning.node import PlannerNode
 from navette.runtime import Parameter
 from navette.runtime.time import ns_to_stamp
@@ -26,6 +27,7 @@ class World:
         self.graph = graph
         self.occupancy, self.spec = empty_map(10, 8)
         self.pose, self.odometry = Pose2(1, 4, 0), True
+        self.sent_ns = 0
         overrides = [Parameter(name, value=value) for name, value in params.items()]
         self.node = graph.add(
             PlannerNode(context=graph.context, parameter_overrides=overrides)
@@ -34,10 +36,27 @@ class World:
         self.reports = graph.collect("/planner/status", DiagnosticStatus, latched=True)
         graph.node.create_timer(0.1, self._move)
 
-    def send_map(self, frame: str = "map") -> None:
-        now_ns = self.graph.now_ns
+    def send_map(self, frame: str = "map", stamp_ns: int | None = None) -> None:
+        now_ns = self.graph.now_ns if stamp_ns is None else stamp_ns
         msg = grid_to_message(self.occupancy.copy(), self.spec, frame, now_ns)
         self.graph.publish("/map", msg, latched=True)
+
+    def send_part(
+        self,
+        window: CellWindow,
+        frame: str = "map",
+        stamp_ns: int | None = None,
+        cells: Cells | None = None,
+    ) -> None:
+        """Publish a part of the map, or ``cells`` at that place."""
+        self.sent_ns = self.graph.now_ns if stamp_ns is None else stamp_ns
+        if cells is None:
+            msg = window_to_message(self.occupancy, window, frame, self.sent_ns)
+        else:
+            whole = CellWindow.whole(cells.shape)
+            msg = window_to_message(cells, whole, frame, self.sent_ns)
+            msg.x, msg.y = window.first_column, window.first_row
+        self.graph.publish("/map_updates", msg)
 
     def send(self, x: float, y: float, frame: str = "map") -> None:
         msg = PointStamped(point=Point(x=x, y=y))

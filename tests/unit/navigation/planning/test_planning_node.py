@@ -15,6 +15,8 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
+from navette.navigation.grids import CellWindow
+from navette.navigation.planning.planner import Planner
 from navette.runtime import Parameter, StaticTransformBroadcaster
 from navette.testing import GraphHarness
 
@@ -261,3 +263,64 @@ def test_a_service_cancels_the_goal(graph: GraphHarness) -> None:
     answer = client.call_async(Trigger.Request())
     graph.run_for(0.01)
     assert answer.result().message == "no goal was active"
+
+
+def test_a_part_of_the_map_that_blocks_the_path_replaces_it_at_once(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    graph.run_for(0.7)
+    fill(world.occupancy, world.spec, (5, 5.2), (3, 5))
+    window = CellWindow.around(world.spec, np.array([(5.0, 3.0), (5.2, 5.0)]), 2)
+    world.send_part(window)
+    graph.run_for(0.01)
+    assert world.paths.count == 2
+    assert np.abs(world.last_path()[:, 1] - 4).max() > 1
+    # The whole map with the same stamp is known; the next one is not.
+    fill(world.occupancy, world.spec, (5, 5.2), (0, 8))
+    world.send_map(stamp_ns=world.sent_ns)
+    graph.run_for(0.5)
+    assert world.message == "following"
+    world.send_map()
+    graph.run_for(0.5)
+    assert world.message == "no_path"
+
+
+def test_parts_that_are_older_or_outside_leave_the_map(graph: GraphHarness) -> None:
+    world = World(graph)
+    window = CellWindow(0, 20, 0, 20)
+    world.send_part(window)  # before any map
+    world.ready()
+    sent_ns = graph.now_ns
+    world.send(8, 4)
+    graph.run_for(0.7)
+    fill(world.occupancy, world.spec, (5, 5.2), (0, 8))
+    whole = CellWindow.whole(world.spec.shape)
+    world.send_part(whole, stamp_ns=0)
+    world.send_part(whole.shifted(1, 0), cells=world.occupancy)
+    world.send_part(whole, frame="odom")
+    graph.run_for(0.3)
+    assert world.message == "following"
+    assert graph.now_ns > sent_ns
+    world.send_part(whole)
+    graph.run_for(0.3)
+    assert world.message == "no_path"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_parts_give_the_same_grid_as_whole_maps(graph: GraphHarness, seed: int) -> None:
+    world = World(graph).ready()
+    rng = np.random.default_rng(seed)
+    world.send(8, 4)
+    for _ in range(6):
+        row, column = rng.integers(0, 60, 2).tolist()
+        window = CellWindow(row, row + 9, column, column + 12)
+        values = np.array([-1, 0, 0, 0, 60, 100], np.int8)
+        world.occupancy[window.slices] = rng.choice(values, window.shape)
+        world.send_part(window)
+        graph.run_for(0.25)
+        fresh = Planner(world.node.params)
+        fresh.set_map(world.occupancy.copy(), world.spec)
+        grid = world.node._navigator.planner.grid()
+        np.testing.assert_array_equal(grid.cost, fresh.grid().cost)
