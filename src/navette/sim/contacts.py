@@ -55,6 +55,7 @@ class ContactMonitor:
         other = np.where(compiled.is_ground, _GROUND, _OBSTACLE)
         self._kind = np.where(compiled.is_robot, part, other)
         self.episodes: list[ContactEpisode] = []
+        self._harmless = b""  # the newest pairs of geoms that are no contact
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
         self._touches: dict[tuple[int, int], Touch] = {}  # by the pair of geoms
 
@@ -75,9 +76,14 @@ class ContactMonitor:
     def observe(self, data: mujoco.MjData, now_ns: int) -> bool:
         """Record the contacts of the last physics step; return whether one exists."""
         pairs = data.contact.geom
+        # Mostly the wheels on the ground, as in the step before.
+        key = pairs.tobytes()
+        if key == self._harmless:
+            return False
         kind = self._kind[pairs]
         bad = _IS_CONTACT[kind[:, 0] + kind[:, 1]]
         if not bad.any():
+            self._harmless = key
             return False
         for pair, (x, y, z) in zip(pairs[bad], data.contact.pos[bad], strict=True):
             mine, other = pair if self._robot[pair[0]] else pair[::-1]
