@@ -169,8 +169,7 @@ class ObstacleTracker:
             points, radius = nearby(cells, spec, map_T_frame), spec.resolution / 2
         else:
             points = map_T_frame.apply(hits)
-            away = points - (around.x, around.y)
-            points = points[(away**2).sum(axis=1) <= reach_m**2]
+            points = _within(points, around.x, around.y, float(reach_m))
             radius = point_radius(spec.resolution)
         if self._map is not None:
             known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
@@ -265,12 +264,38 @@ def _is_seen(
     map_T_frame: Pose2,
 ) -> NDArray[np.bool_]:
     """Return (N,) whether points (N, 2), map, lie in known cells of a costmap."""
-    uv = (map_T_frame @ spec.origin).inverse().apply(points) / spec.resolution
-    column, row = np.floor(uv).astype(np.int64).T
-    inside = (row >= 0) & (row < spec.height) & (column >= 0) & (column < spec.width)
     seen = np.zeros(len(points), np.bool_)
-    seen[inside] = cells[row[inside], column[inside]] != UNKNOWN
+    frame_T_map = (map_T_frame @ spec.origin).inverse()
+    _mark_seen(np.array(frame_T_map), spec.resolution, points, cells, seen)
     return seen
+
+
+@kernel
+def _mark_seen(
+    frame_T_map: Any, resolution: float, points: Any, cells: Any, seen: Any
+) -> None:
+    x, y, yaw = frame_T_map
+    c, s = math.cos(yaw), math.sin(yaw)
+    height, width = cells.shape
+    for k in range(points.shape[0]):
+        px, py = points[k, 0], points[k, 1]
+        column = math.floor((c * px - s * py + x) / resolution)
+        row = math.floor((s * px + c * py + y) / resolution)
+        if 0 <= row < height and 0 <= column < width:
+            seen[k] = cells[row, column] != UNKNOWN
+
+
+@kernel
+def _within(points: Any, x: float, y: float, reach: float) -> Any:
+    """Return the points (N, 2) within reach of (x, y)."""
+    kept = np.empty_like(points)
+    count = 0
+    for k in range(points.shape[0]):
+        dx, dy = points[k, 0] - x, points[k, 1] - y
+        if dx * dx + dy * dy <= reach * reach:
+            kept[count, 0], kept[count, 1] = points[k, 0], points[k, 1]
+            count += 1
+    return kept[:count]
 
 
 def obstacle_points(

@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
+from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec, grid_frame
 from navette.navigation.grids.windows import CellWindow
 
 SUB_CELLS = 8
 """Sub-cells along an edge of a cell; 64 bits in all."""
 
 _CIRCLE_POINTS = 8
+_AROUND = np.arange(_CIRCLE_POINTS) * (2 * np.pi / _CIRCLE_POINTS)
+_CIRCLE = np.column_stack([np.cos(_AROUND), np.sin(_AROUND)])
 
 Masks = NDArray[np.uint64]
 Points = NDArray[np.float64]
@@ -88,13 +90,15 @@ def cell_points(
     centre: with the radius they cover the border of half a cell. ``first`` as in
     :func:`points_by_cell`.
     """
-    unmarked = cells[masks[cells[:, 0] - first[0], cells[:, 1] - first[1]] == 0]
-    around = np.arange(_CIRCLE_POINTS) * (2 * np.pi / _CIRCLE_POINTS)
     away = max(0.0, 0.5 * spec.resolution - radius_m)
-    circle = away * np.column_stack([np.cos(around), np.sin(around)])
-    circles = spec.centers_of(unmarked)[:, None, :] + circle
-    marked = points_by_cell(masks, spec, cells, first)[0]
-    return np.concatenate([marked, circles.reshape(-1, 2)])
+    points: Points = _cell_points(
+        masks,
+        np.ascontiguousarray(cells, np.int64),
+        *first,
+        grid_frame(spec),
+        away * _CIRCLE,
+    )
+    return points
 
 
 def local_cell_points(
@@ -199,6 +203,34 @@ def _points_by_cell(masks: Any, cells: Any, first_row: int, first_column: int) -
             mask >>= np.uint64(1)
             bit += 1
     return points, which
+
+
+@kernel
+def _cell_points(
+    masks: Any, cells: Any, first_row: int, first_column: int, frame: Any, circle: Any
+) -> Points:
+    """Return the marked points, then a circle about each cell (M, 2) without one."""
+    marked, _ = _points_by_cell(masks, cells, first_row, first_column)
+    empty = 0
+    for k in range(cells.shape[0]):
+        empty += masks[cells[k, 0] - first_row, cells[k, 1] - first_column] == 0
+    points = np.empty((marked.shape[0] + empty * circle.shape[0], 2))
+    for k in range(marked.shape[0]):
+        u, v = marked[k, 0] * frame.resolution, marked[k, 1] * frame.resolution
+        points[k, 0] = frame.x + frame.cos * u - frame.sin * v
+        points[k, 1] = frame.y + frame.sin * u + frame.cos * v
+    at = marked.shape[0]
+    for k in range(cells.shape[0]):
+        row, column = cells[k, 0], cells[k, 1]
+        if masks[row - first_row, column - first_column] != 0:
+            continue
+        u, v = (column + 0.5) * frame.resolution, (row + 0.5) * frame.resolution
+        x = frame.x + frame.cos * u - frame.sin * v
+        y = frame.y + frame.sin * u + frame.cos * v
+        for i in range(circle.shape[0]):
+            points[at, 0], points[at, 1] = x + circle[i, 0], y + circle[i, 1]
+            at += 1
+    return points
 
 
 @kernel
