@@ -90,25 +90,27 @@ def checked_method(name: str, target: Any, protocols: Protocols, kind: str) -> M
     Raises:
         InvalidValueError: names the file, the line, and what is missing or wrong.
     """
-    where = f"{kind} {describe(name, target)}"
     if inspect.isclass(target):
         entry = next((each for each in protocols if hasattr(target, each)), None)
         if entry is None:
             raise InvalidValueError(
-                f"{where} has no method {_signatures(protocols)}; it has: "
-                f"{_listed(_methods(target))}"
+                f"{kind} {describe(name, target)} has no method "
+                f"{_signatures(protocols)}; it has: {_listed(_methods(target))}"
             )
         arguments = ("self", *protocols[entry])
-        _check_signature(where, getattr(target, entry), entry, arguments)
+        problem = _call_problem(getattr(target, entry), entry, arguments)
     elif callable(target):
         name_of = getattr(target, "__name__", name)
         entry = name_of if name_of in protocols else next(iter(protocols))
-        _check_signature(where, target, name_of, protocols[entry])
+        problem = _call_problem(target, name_of, protocols[entry])
     else:
         raise InvalidValueError(
-            f"{where} is of type {type(target).__name__}; expected a class with "
-            f"{_signatures(protocols)}, or a function with these arguments"
+            f"{kind} {describe(name, target)} is of type {type(target).__name__}; "
+            f"expected a class with {_signatures(protocols)}, or a function with these "
+            "arguments"
         )
+    if problem is not None:
+        raise InvalidValueError(f"{kind} {describe(name, target)}: {problem}")
     return Method(name, target, entry, is_own=True)
 
 
@@ -237,21 +239,19 @@ def _methods(target: type) -> list[str]:
     ]
 
 
-def _check_signature(
-    where: str, function: Any, name: str, arguments: tuple[str, ...]
-) -> None:
+def _call_problem(function: Any, name: str, arguments: tuple[str, ...]) -> str | None:
+    """Return why a function does not take the arguments; None if it does."""
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):  # built in: it has none
-        return
+        return None
     try:
         signature.bind(*arguments)
     except TypeError as error:
         shown = [each for each in arguments if each != "self"]
-        raise InvalidValueError(
-            f"{where}: {name}{signature} cannot be called as "
-            f"{name}({', '.join(shown)}): {error}"
-        ) from None
+        call = f"{name}({', '.join(shown)})"
+        return f"{name}{signature} cannot be called as {call}: {error}"
+    return None
 
 
 def _signatures(protocols: Protocols) -> str:
