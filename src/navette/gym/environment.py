@@ -20,7 +20,7 @@ from navette.gym.worlds import NodeParameters, WorldSource
 from navette.sim import Scene, Simulator
 from navette.sim.scene import MecanumDrive
 from navette.sim.sensor_specs import LidarSensor
-from navette.sim.sensors import sensors_of
+from navette.sim.sensor_topics import sensors_of
 
 _OPTIONS = ("start", "goal", "world_seed")
 

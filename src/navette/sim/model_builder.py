@@ -98,7 +98,7 @@ class ModelBuilder:
     ) -> None:
         body_T_link = body_T_model @ link.model_T_link
         for geometry in link.geometries:
-            ground = isinstance(geometry.shape, Plane)
+            ground = isinstance(geometry.shape, Plane) or geometry.is_ground
             name = self._name(model, link, geometry)
             add_geom(
                 body,

@@ -31,9 +31,9 @@ from navette.sim.robot_state import Motion
 from navette.sim.run_control import RunControl
 from navette.sim.scene import Scene
 from navette.sim.sensor_messages import hazards_message
-from navette.sim.sensor_outputs import SensorTopic, topics_of
+from navette.sim.sensor_outputs import output_of
 from navette.sim.sensor_specs import ContactSensor, Sensor
-from navette.sim.sensors import sensors_of
+from navette.sim.sensor_topics import SensorTopic, sensors_of, topics_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
 
@@ -292,13 +292,13 @@ class SimNode(StageNode):
     def _add_publisher(self, topic: SensorTopic) -> None:
         """Create the publisher of a further sensor of its kind."""
         if topic.name not in self.publishers_by_topic:
-            like = self.publishers_by_topic[topic.output.topic.name]
+            like = self.publishers_by_topic[topic.stack.name]
             self.publishers_by_topic[topic.name] = self.create_publisher(
                 like.msg_type, topic.name, like.qos_profile
             )
 
     def _publish_sensor(self, topic: SensorTopic, stamp_ns: int) -> None:
-        sensor, output = topic.sensor, topic.output
+        sensor, output = topic.sensor, output_of(topic)
         reading = None
         if output.needs_reading:
             reading = self._reading(type(sensor), topic.index, stamp_ns)

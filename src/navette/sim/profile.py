@@ -3,8 +3,11 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from navette.geometry import Transform3, Vector3
+from navette.msgs import topics
+from navette.msgs.topics import StackTopic
 from navette.sim.drive_geometry import base_of
 from navette.sim.scene import (
     Box,
@@ -17,6 +20,14 @@ from navette.sim.scene import (
     Shape,
     Sphere,
 )
+from navette.sim.sensor_specs import (
+    DepthCameraSensor,
+    LidarSensor,
+    RingLidarSensor,
+    Sensor,
+    SonarSensor,
+)
+from navette.sim.sensor_topics import has_bumper, topics_of
 
 _CORNERS = 12  # of the polygon drawn around a circle
 
@@ -64,6 +75,7 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
     yaw_acceleration = limits.yaw_acceleration or 2 * yaw_rate
     cruise = 0.7 * speed
     return {
+        **_costmap_parameters(model, flat),
         "sim": {
             "max_speed_mps": speed,
             "max_reverse_speed_mps": reverse,
@@ -93,6 +105,46 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
             "turn_acceleration_radps2": min(yaw_acceleration, 2.0),
         },
     }
+
+
+_HEADROOM_M = 0.1  # above the robot, within which an obstacle counts
+
+
+def _costmap_parameters(model: Model, outline: list[float]) -> dict[str, Any]:
+    """Return parameters of the obstacle layer, if a further sensor needs it."""
+    sources: dict[str, dict[str, object]] = {}
+    top = round(extent_of(model)[1][2] + _HEADROOM_M, 3)
+    for topic in topics_of(model):
+        values = _SOURCES.get((type(topic.sensor), topic.stack))
+        is_main = topic.name == topics.LIDAR.name
+        if values is not None and not is_main:
+            name = topic.name.strip("/").replace("/", "_")
+            sources[name] = {
+                "topic": topic.name,
+                **values,
+                "max_obstacle_height": top,
+            }
+    if has_bumper(model):
+        hazards = topics.HAZARDS.name
+        sources["bumper"] = {"topic": hazards, "data_type": "HazardDetectionVector"}
+    if not sources:
+        return {}
+    prefix = "obstacle_layer"
+    found: dict[str, object] = {f"{prefix}.observation_sources": " ".join(sources)}
+    for name, values in sources.items():
+        found |= {f"{prefix}.{name}.{key}": value for key, value in values.items()}
+    return {"costmap": {"footprint_m": outline, **found}}
+
+
+# A laser measures farther with the same accuracy; the noise of depth grows with range².
+_FAR = {"obstacle_max_range": 4.0, "raytrace_max_range": 5.0}
+_CLOUD = {"data_type": "PointCloud2"}
+_SOURCES: dict[tuple[type[Sensor], StackTopic], dict[str, object]] = {
+    (LidarSensor, topics.LIDAR): {"data_type": "LaserScan", **_FAR},
+    (RingLidarSensor, topics.POINTS): {**_CLOUD, **_FAR},
+    (DepthCameraSensor, topics.DEPTH_POINTS): _CLOUD,
+    (SonarSensor, topics.SONAR): {"data_type": "Range"},
+}
 
 
 def convex_hull(points: list[Point2]) -> tuple[Point2, ...]:

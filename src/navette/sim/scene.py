@@ -78,6 +78,7 @@ class Geometry:
     visible: bool = True
     friction: float | None = None
     surface: Surface | None = None  # None: opaque and light, as most
+    is_ground: bool = False  # of a static model: floor to drive on, as planes are
 
     def __post_init__(self) -> None:
         if _largest_measure(self.shape) > _LARGEST_M:

@@ -68,6 +68,7 @@ def _geometry(
         visible=not collides,
         friction=_read_friction(node) if collides else None,
         surface=_read_surface(node),
+        is_ground=collides and node.flag("ground"),
     )
 
 

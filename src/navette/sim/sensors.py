@@ -24,7 +24,6 @@ from navette.sim.lidar import Lidar
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
 from navette.sim.ring_lidar import RingLidar
-from navette.sim.scene import Model
 from navette.sim.sensor_specs import (
     CameraSensor,
     ContactSensor,
@@ -36,6 +35,7 @@ from navette.sim.sensor_specs import (
     Sensor,
     SonarSensor,
 )
+from navette.sim.sensor_topics import sensors_of
 from navette.sim.sonar import Sonar
 
 S = TypeVar("S", bound=Sensor)
@@ -46,14 +46,6 @@ class Device(Protocol):
 
     def read(self, instant: Instant, rng: np.random.Generator) -> Any:
         """Return the reading of an instant, with noise from ``rng``."""
-
-
-def sensors_of(model: Model, kind: type[S]) -> Iterator[tuple[str, S]]:
-    """Return (link name, sensor) of exactly one kind, in the order of the model."""
-    for link in model.links:
-        for sensor in link.sensors:
-            if type(sensor) is kind:
-                yield link.name, sensor
 
 
 def make_devices(

@@ -120,9 +120,8 @@ class Simulator:
         self.contacts.reset()
         self.min_clearance = Clearance(math.inf, "")
         if self._start is not None:
-            floor = (
-                self._floor() + 1e-3
-            )  # slightly above the floor: no contact to resolve yet
+            # Slightly above the floor: no contact to resolve yet.
+            floor = self._floor(self._start) + 1e-3
             self.state.place(Transform3.from_pose2(self._start, z=floor))
         for imu in self.imus:
             imu.reset(self._imu_rng)
@@ -163,10 +162,23 @@ class Simulator:
         # The IMUs share one, as ever.
         self._rngs[ImuSensor] = [self._imu_rng] * len(self.imus)
 
-    def _floor(self) -> float:
-        mujoco.mj_kinematics(self.compiled.model, self._data)
-        ground = np.flatnonzero(self.compiled.is_ground)
-        return float(self._data.geom_xpos[ground[0], 2]) if len(ground) else 0.0
+    def _floor(self, start: Pose2) -> float:
+        """Height of the floor at a pose: the first plane, or a box above it."""
+        model, data = self.compiled.model, self._data
+        mujoco.mj_kinematics(model, data)
+        height: float | None = None
+        for geom in np.flatnonzero(self.compiled.is_ground):
+            z = float(data.geom_xpos[geom, 2])
+            if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX:
+                place = np.array([start.x, start.y, z]) - data.geom_xpos[geom]
+                away = np.abs(place @ data.geom_xmat[geom].reshape(3, 3))
+                half = model.geom_size[geom]
+                if away[0] <= half[0] and away[1] <= half[1]:
+                    top = z + float(half[2])
+                    height = top if height is None else max(height, top)
+            elif height is None:
+                height = z
+        return height or 0.0
 
     def change_params(self, params: SimParams) -> None:
         """Apply new limits, timeout and lidar noise; other parameters are fixed."""

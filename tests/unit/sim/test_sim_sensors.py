@@ -15,7 +15,6 @@ from navette.sim.mounting import mount_of, mounts_of, with_sensors
 from navette.sim.ring_lidar import level_scan
 from navette.sim.scene import GeoOrigin
 from navette.sim.sensor_catalogue import BUMPER_SECTORS, CATALOGUE
-from navette.sim.sensor_outputs import topics_of
 from navette.sim.sensor_specs import (
     CameraSensor,
     ContactSensor,
@@ -26,6 +25,7 @@ from navette.sim.sensor_specs import (
     Sensor,
     SonarSensor,
 )
+from navette.sim.sensor_topics import topics_of
 from navette.sim.surface import BLACK, GLASS, Surface
 
 HERE = Pose2(0.0, 0.0, 0.0)

@@ -52,6 +52,12 @@ class ResolvedScene:
             overrides.add(node, values, f"parameters of robot {self.robot_name}")
         if self.params_file is not None:
             overrides.add_file(self.params_file)
+        if "costmap" in self.derived:  # the obstacle layer places what sensors saw
+            of_sim = overrides.for_node("/sim")
+            for name in ("map_frame", "base_frame"):
+                if name in of_sim:
+                    given = of_sim[name]
+                    overrides.add("costmap", {name: given.value}, given.origin)
 
 
 def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedScene:
@@ -69,10 +75,14 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
     if scene is None:
         scene = load_world(options.world)
     robot = _choose_robot(options, scene)
+    is_own = scene.robot is robot.model
     if options.sensors:
         model = with_sensors(robot.model, map(mount_of, options.sensors))
         robot = replace(robot, model=model)
-    if scene.robot is not robot.model:
+    if is_own:
+        models = (robot.model if m is scene.robot else m for m in scene.models)
+        scene = replace(scene, models=tuple(models))
+    else:
         scene = scene.with_robot(robot.model)
     derived = derive_parameters(robot.model)
     return ResolvedScene(

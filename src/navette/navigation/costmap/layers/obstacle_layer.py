@@ -63,7 +63,7 @@ class ObstacleLayer:
         distance = np.linalg.norm(hits - origin, axis=1)
         if source.clearing:
             ends = np.concatenate([hits, observation.misses])
-            self._clear(origin, ends, source)
+            self._clear(origin, _one_in_each_cell(ends, self.params), source)
         if not source.marking:
             return
         near = distance <= source.obstacle_max_range
@@ -167,6 +167,20 @@ def floor_crossings(origin: Points, ends: Points) -> tuple[Points, NDArray[np.fl
     share = origin[2] / (origin[2] - ends[:, 2])
     places: Points = origin[:2] + share[:, None] * (ends[:, :2] - origin[:2])
     return places, share
+
+
+def _one_in_each_cell(points: Points, params: ObstacleLayerParams) -> Points:
+    """Return one of the points (N, 3) in each voxel, the first.
+
+    Rays to one voxel clear nearly the same: a depth camera has dozens to a near one.
+    """
+    sizes = (params.resolution_m, params.resolution_m, params.z_resolution)
+    index = np.floor(points / sizes).astype(np.int64)
+    # Within ±2²⁰ voxels, which is far beyond every window; others may coincide.
+    key = ((index[:, 0] << 42) ^ (index[:, 1] << 21)) ^ index[:, 2]
+    _, first = np.unique(key, return_index=True)
+    kept: Points = points[np.sort(first)]
+    return kept
 
 
 def _same(a: Points, b: Points) -> bool:

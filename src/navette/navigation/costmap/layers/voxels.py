@@ -164,53 +164,66 @@ def _mark_points(columns, corner, resolution, z, points):  # type: ignore[no-unt
 def _clear_rays(  # type: ignore[no-untyped-def]
     columns, corner, resolution, z, origin, ends, margin, least_chord
 ):
-    scale = np.array([1.0 / resolution, 1.0 / resolution, 1.0 / z[1]])
-    start = np.array([origin[0], origin[1], origin[2] - z[0]]) * scale
-    speed = np.empty(3)
+    """Clear along each ray, in units of voxels from the window's corner."""
+    start = (
+        origin[0] / resolution - corner[0],
+        origin[1] / resolution - corner[1],
+        (origin[2] - z[0]) / z[1],
+    )
     for i in range(ends.shape[0]):
-        length = 0.0
-        for k in range(3):
-            d = ends[i, k] - origin[k]
-            speed[k] = d * scale[k]
-            length += d * d
-        length = math.sqrt(length)
+        dx, dy = ends[i, 0] - origin[0], ends[i, 1] - origin[1]
+        dz = ends[i, 2] - origin[2]
+        length = math.sqrt(dx * dx + dy * dy + dz * dz)
         if length > margin:
+            speed = dx / resolution, dy / resolution, dz / z[1]
             _clear_ray(
-                columns, corner, z[2], start, speed, length,
-                1.0 - margin / length, least_chord / length,
+                columns, corner, z[2], start, speed, 1.0 - margin / length,
+                least_chord / length,
             )  # fmt: skip
 
 
 @kernel(inline="never")
+def _edge(start, speed):  # type: ignore[no-untyped-def]
+    """Voxel, step, time of the first edge and time between edges along one axis."""
+    at = math.floor(start)
+    if speed == 0.0:
+        return at, 0, np.inf, np.inf
+    if speed > 0.0:
+        return at, 1, (at + 1 - start) / speed, 1.0 / speed
+    return at, -1, (at - start) / speed, -1.0 / speed
+
+
+@kernel(inline="never")
 def _clear_ray(  # type: ignore[no-untyped-def]
-    columns, corner, z_voxels, start, speed, length, until, least
+    columns, corner, z_voxels, start, speed, until, least
 ):
-    """Clear along start + t · speed for t in 0 … until, in voxels."""
+    """Clear along start + t · speed for t in 0 … until."""
     count = columns.shape[0]
-    at = np.empty(3, np.int64)
-    step = np.empty(3, np.int64)
-    next_t, delta = np.empty(3), np.empty(3)
-    for k in range(3):
-        at[k] = math.floor(start[k])
-        step[k] = 1 if speed[k] > 0.0 else -1
-        if speed[k] == 0.0:
-            next_t[k], delta[k] = np.inf, np.inf
-            continue
-        edge = at[k] + 1 if speed[k] > 0.0 else at[k]
-        next_t[k] = (edge - start[k]) / speed[k]
-        delta[k] = abs(1.0 / speed[k])
+    x, step_x, next_x, delta_x = _edge(start[0], speed[0])
+    y, step_y, next_y, delta_y = _edge(start[1], speed[1])
+    z, step_z, next_z, delta_z = _edge(start[2], speed[2])
+    row, column = (y + corner[1]) % count, (x + corner[0]) % count  # in storage
     entered = 0.0
     while entered < until:
-        k = 0
-        if next_t[1] < next_t[k]:
-            k = 1
-        if next_t[2] < next_t[k]:
-            k = 2
-        left = min(next_t[k], until)
-        x, y = at[0], at[1]
-        is_inside = 0 <= x - corner[0] < count and 0 <= y - corner[1] < count
-        if is_inside and 0 <= at[2] < z_voxels and left - entered >= least:
-            columns[y % count, x % count] &= ~np.uint32(1 << at[2])
-        entered = next_t[k]
-        at[k] += step[k]
-        next_t[k] += delta[k]
+        left = min(next_x, next_y, next_z)
+        if (
+            0 <= z < z_voxels
+            and 0 <= x < count
+            and 0 <= y < count
+            and min(left, until) - entered >= least
+        ):
+            columns[row, column] &= ~np.uint32(1 << z)
+        entered = left
+        if left == next_x:
+            x += step_x
+            next_x += delta_x
+            column += step_x
+            column = 0 if column == count else (count - 1 if column < 0 else column)
+        elif left == next_y:
+            y += step_y
+            next_y += delta_y
+            row += step_y
+            row = 0 if row == count else (count - 1 if row < 0 else row)
+        else:
+            z += step_z
+            next_z += delta_z
