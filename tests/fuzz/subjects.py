@@ -54,9 +54,20 @@ _EKF: dict[str, Any] = {
     "world_frame": "map",
 }
 
+_OBSTACLES: dict[str, Any] = {"obstacle_layer.observation_sources": "a b c d"}
+for _name, (_source, _kind) in {
+    "a": ("/lidar/rear", "LaserScan"),
+    "b": ("/depth/points", "PointCloud2"),
+    "c": ("/sonar", "Range"),
+    "d": ("/hazard_detection", "HazardDetectionVector"),
+}.items():
+    _OBSTACLES[f"obstacle_layer.{_name}.topic"] = _source
+    _OBSTACLES[f"obstacle_layer.{_name}.data_type"] = _kind
+
 #: Parameters with which a stage is tested, by the name of its node; without an entry
 #: the stage is tested with its defaults.
 VARIANTS: dict[str, tuple[dict[str, Any], ...]] = {
+    "costmap": ({}, _OBSTACLES),
     "ekf": (_EKF,),
     # Most searches under extreme parameters fail: at this limit, or 20 times later.
     "planner": ({"max_expansions": 2000},),

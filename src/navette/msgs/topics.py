@@ -102,6 +102,7 @@ COLLISION_MONITOR_STATE = StackTopic(
 CMD_VEL_NAV = StackTopic("/cmd_vel_nav", "geometry_msgs/msg/Twist")
 CMD_VEL_TELEOP = StackTopic("/cmd_vel_teleop", "geometry_msgs/msg/Twist")
 CMD_VEL_ASSISTED = StackTopic("/cmd_vel_assisted", "geometry_msgs/msg/Twist")
+CMD_VEL_REFLEX = StackTopic("/cmd_vel_reflex", "geometry_msgs/msg/Twist")
 PREEMPT_TELEOP = StackTopic("/preempt_teleop", "std_msgs/msg/Empty")
 CMD_VEL = StackTopic("/cmd_vel", "geometry_msgs/msg/Twist")
 DRIVE = StackTopic("/drive", "ackermann_msgs/msg/AckermannDriveStamped")

@@ -30,6 +30,7 @@ from navette.navigation.arbiter.command_limits import CommandLimits, Velocity
 from navette.navigation.arbiter.params import (
     LOCKS,
     NAVIGATION,
+    REFLEX,
     SOURCES,
     ArbiterParams,
     CommandLockParams,
@@ -80,6 +81,7 @@ class ArbiterNode(StageNode):
         _commands(
             topics.CMD_VEL_TELEOP, "commands of the operator (`topics.operator`)"
         ),
+        _commands(topics.CMD_VEL_REFLEX, "commands after a contact (`topics.reflex`)"),
         _commands(
             topics.CMD_VEL,
             "commands of programs beside the arbiter (`topics.external`)",
@@ -338,6 +340,8 @@ class ArbiterNode(StageNode):
         before, self._masked_nav = self._masked_nav, NAVIGATION in masked
         stops = commander == EMERGENCY_STOP
         after = self.params.after_stop if stops else self.params.after_takeover
+        if commander == REFLEX:  # navigation itself reacts to the contact
+            after = "resume"
         began = self._masked_nav and (not before or (stops and not self._was_stopped))
         self._was_stopped = stops
         if began and after == "end":

@@ -75,9 +75,14 @@ class CommandLockParams(Params):
 
 
 NAVIGATION = "navigation"
+REFLEX = "reflex"
 
 SOURCES: dict[str, CommandSourceParams] = {
     NAVIGATION: CommandSourceParams(topic=topics.CMD_VEL_NAV.name, priority=10),
+    # After a contact; operators and programs beside the arbiter overrule it.
+    REFLEX: CommandSourceParams(
+        topic=topics.CMD_VEL_REFLEX.name, priority=30, over_limit="scale"
+    ),
     # Programs that publish the arbiter's output themselves.
     "external": CommandSourceParams(
         topic=topics.CMD_VEL.name, priority=50, hold=1.0, over_limit="scale"

@@ -8,6 +8,7 @@ from typing import Any
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
 from navette.msgs.topics import CLOCK
+from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.mapping.zones.node import ZonesNode
 from navette.navigation.stack.localization import localization_nodes
 from navette.navigation.stack.localization_params import localization_parameters
@@ -32,6 +33,7 @@ from navette.runtime import (
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene
 from navette.sim.node import SimNode
+from navette.sim.sensor_topics import has_bumper
 from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
 from navette.viewer.params import ViewerParams
@@ -157,11 +159,13 @@ class Simulation:
         self._add_localization()
         located_by = [name for name, _ in localization_nodes(self.sim.params)]
         self.stack = NavigationStack.create(context, self._replacements, located_by)
+        frames = {
+            name: getattr(self.sim.params, name) for name in ("map_frame", "base_frame")
+        }
+        if has_bumper(self.sim.simulator.compiled.robot.model):
+            self._add_below("reflex", frames, "frames of the robot")
+            ReflexNode(context=context)
         if options.keepout is not None or options.speed_zones is not None:
-            frames = {
-                name: getattr(self.sim.params, name)
-                for name in ("map_frame", "base_frame")
-            }
             self._add_below("zones", frames, "frames of the robot")
             ZonesNode(context=context)
         self.viewer = (

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from navette.errors import UnknownNameError
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.navigation.behaviors.node import BehaviorNode
+from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.control.node import ControlNode
 from navette.navigation.control.params import ControlParams
 from navette.navigation.costmap.node import CostmapNode
@@ -50,6 +51,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("planner", PlannerNode),
     ("control", ControlNode),
     ("behaviors", BehaviorNode),
+    ("reflex", ReflexNode),
     ("arbiter", ArbiterNode),
     ("missions", MissionNode),
     ("explorer", ExplorerNode),

@@ -188,6 +188,14 @@ def behaviors() -> None:
 
 
 @_program
+def reflex() -> None:
+    """Run the reflex to contacts."""
+    from navette.navigation.behaviors.reflex.node import ReflexNode
+
+    _run_stage("reflex", ReflexNode, "/hazard_detection → /cmd_vel_reflex")
+
+
+@_program
 def arbiter() -> None:
     """Run the arbiter."""
     from navette.navigation.arbiter.node import ArbiterNode

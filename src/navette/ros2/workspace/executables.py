@@ -24,6 +24,7 @@ _STAGES = (
     "map_memory",
     "tracking",
     "zones",
+    "reflex",
     "planner",
     "control",
     "behaviors",

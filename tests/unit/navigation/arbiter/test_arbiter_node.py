@@ -66,7 +66,9 @@ def test_the_operator_takes_over_in_the_same_instant(bench: Bench) -> None:
     assert bench.send("/cmd_vel_teleop", twist(-0.1)) == [-0.1]
     assert bench.commander == "operator"
     assert bench.value("nodes") == "/harness"
-    assert bench.value("masked_topics") == "/cmd_vel,/drive,/cmd_vel_nav"
+    assert (
+        bench.value("masked_topics") == "/cmd_vel,/drive,/cmd_vel_reflex,/cmd_vel_nav"
+    )
     assert bench.send("/cmd_vel_nav", twist(0.3)) == []
 
 

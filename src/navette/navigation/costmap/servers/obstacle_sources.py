@@ -42,6 +42,7 @@ _TYPES = {
     "Range": "sensor_msgs/msg/Range",
     "HazardDetectionVector": "irobot_create_msgs/msg/HazardDetectionVector",
 }
+_AHEAD_NS = 500_000_000  # of a stamp, beyond the newest odometry
 _FARTHEST_M = 1000.0  # of a sensor from the base
 
 P = TypeVar("P", bound=Params)
@@ -229,7 +230,13 @@ class ObstacleSources:
         return pose
 
     def _pose_at(self, stamp_ns: int) -> Pose2 | None:
-        """Return odom_T_base: continuous, also while map → odom is corrected."""
+        """Return odom_T_base: continuous, also while map → odom is corrected.
+
+        None: the stamp is outside the odometry's history, or well after it.
+        """
+        newest_ns = self._tracker.stamp_ns
+        if newest_ns is None or stamp_ns > newest_ns + _AHEAD_NS:
+            return None
         pose = self._tracker.predicted_at(stamp_ns)
         return None if pose is None else self._tracker.in_odom(pose)
 
