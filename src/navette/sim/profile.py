@@ -138,7 +138,7 @@ def _costmap_parameters(model: Model, outline: list[float]) -> dict[str, Any]:
 
 # A laser measures farther with the same accuracy; the noise of depth grows with range².
 _FAR = {"obstacle_max_range": 4.0, "raytrace_max_range": 5.0}
-_CLOUD = {"data_type": "PointCloud2"}
+_CLOUD: dict[str, object] = {"data_type": "PointCloud2"}
 _SOURCES: dict[tuple[type[Sensor], StackTopic], dict[str, object]] = {
     (LidarSensor, topics.LIDAR): {"data_type": "LaserScan", **_FAR},
     (RingLidarSensor, topics.POINTS): {**_CLOUD, **_FAR},

@@ -4,9 +4,9 @@
 A robot's file and ``--sensor`` mount them. Sources, as published by the makers:
 
 - ``d435``: Intel RealSense D400 series data sheet: field of view 87° × 58°, baseline
-  50 mm, up to about 10 m, 6 to 90 images a second. Error of depth: z² · subpixel / (f · baseline), with a
-  subpixel accuracy of 0.08 and f = 447 pixels at 848 × 480. The image is that of 424 x
-  240 after the driver's decimation by 2.
+  50 mm, up to about 10 m, 6 to 90 images a second. Error of depth: z² · subpixel /
+  (f · baseline), with a subpixel accuracy of 0.08 and f = 447 pixels at 848 × 480. The
+  image is that of 424 × 240 after the driver's decimation by 2.
 - ``vlp16``: Velodyne VLP-16 user manual: 16 rings at ±15°, 0.2° at 10 Hz, 100 m, ±3 cm.
   The driver publishes the echoes as a list.
 - ``os1_32``: Ouster OS1-32 data sheet: 32 rings at ±22.5°, 1024 columns at 10 Hz, range

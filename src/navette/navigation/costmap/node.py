@@ -165,7 +165,10 @@ class CostmapNode(StageNode):
         """Clear the costmap of Nav2's name until the next scan.
 
         The costmap that stops the robot is not changed: what a beam hits is there.
+        Without a region the obstacle layer is cleared, too.
         """
+        if region is None and self._sources is not None:
+            self._sources.clear()
         if self._newest is None:
             return
         cells, spec = grid_from_message(self._newest)

@@ -62,8 +62,7 @@ class ObstacleLayer:
         origin, hits = observation.origin, observation.hits
         distance = np.linalg.norm(hits - origin, axis=1)
         if source.clearing:
-            ends = np.concatenate([hits, observation.misses])
-            self._clear(origin, _one_in_each_cell(ends, self.params), source)
+            self._clear(origin, np.concatenate([hits, observation.misses]), source)
         if not source.marking:
             return
         near = distance <= source.obstacle_max_range
@@ -133,6 +132,7 @@ class ObstacleLayer:
                 :, None
             ]
         )
+        ends = _one_in_each_cell(ends, self.params)
         self._voxels.clear(origin, ends, margin=resolution, least_chord=least)
 
     def _mark_drops(

@@ -26,17 +26,19 @@ class RangeWindow:
         self._count = max(1, math.ceil(size_m / resolution - 1e-9))
         self._cells = np.full((self._count, self._count), _PRIOR)
         self._corner: tuple[int, int] | None = None
+        self._is_used = False  # whether there was a reading
 
     def reset(self) -> None:
         """Forget all readings."""
         self._cells[:] = _PRIOR
+        self._is_used = False
 
     def move_to(self, x: float, y: float) -> None:
         """Centre the window on a point; what leaves it is forgotten."""
         half, r = self._count // 2, self.resolution
         corner = math.floor(x / r) - half, math.floor(y / r) - half
         before, self._corner = self._corner, corner
-        if before is None:
+        if before is None or before == corner or not self._is_used:
             return
         kept = np.full_like(self._cells, _PRIOR)
         dx, dy = corner[0] - before[0], corner[1] - before[1]
@@ -65,6 +67,7 @@ class RangeWindow:
         """
         if self._corner is None:
             return
+        self._is_used = True
         x, y, yaw = sensor
         reach = reading + 2.0 * self.resolution
         rows, columns, centres = self._around(x, y, reach)
@@ -83,7 +86,7 @@ class RangeWindow:
 
     def obstacles(self, mark_threshold: float) -> Points:
         """Return the centres (N, 2) of the cells above a probability, m."""
-        if self._corner is None:
+        if not self._is_used:
             return np.empty((0, 2))
         rows, columns = np.nonzero(self._cells > mark_threshold)
         return self._centres(rows, columns)

@@ -141,6 +141,10 @@ class ObstacleSources:
         """Store the pose of the robot."""
         self._tracker.update(msg)
 
+    def clear(self) -> None:
+        """Clear all marks; obstacles that are seen are marked again."""
+        self._layer.reset()
+
     def reset(self) -> None:
         """Forget everything: a new run."""
         self._tracker.reset()
