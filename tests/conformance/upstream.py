@@ -28,8 +28,6 @@ SUITES = {
     "launch": "launch/test/launch",
     "launch_xml": "launch_xml/test/launch_xml",
     "launch_yaml": "launch_yaml/test/launch_yaml",
-    "launch_testing": "launch_testing/test/launch_testing",
-    "launch_pytest": "launch_pytest/test/launch_pytest",
     "launch_ros": "test_launch_ros/test/test_launch_ros",
     "message_filters": "test",
     "rosidl_runtime_py": "test/rosidl_runtime_py",
@@ -82,7 +80,7 @@ def run_suite(folder: Path, search: list[Path]) -> Outcome:
         command = [
             *(sys.executable, "-m", "pytest", str(folder), f"--junitxml={report}"),
             *("-p", "navette.ros2.names.pytest_plugin", "-p", "no:cacheprovider"),
-            *("-p", "pytester", "-p", "no:xdist"),
+            *("-p", "no:xdist"),
             *("--noconftest", "-o", "addopts=", "-q", "--tb=short"),
             *("--continue-on-collection-errors", f"--timeout={TEST_TIMEOUT_S}"),
             f"--rootdir={folder}",

@@ -40,7 +40,15 @@ from navette.ros2.names.loaders import (
 
 #: Packages whose objects Navette itself runs.
 _ALWAYS_NAVETTE = frozenset(
-    {"rclpy", "launch", "launch_ros", "launch_xml", "launch_yaml"}
+    {
+        "rclpy",
+        "launch",
+        "launch_pytest",
+        "launch_ros",
+        "launch_testing",
+        "launch_xml",
+        "launch_yaml",
+    }
 )
 _PACKAGES = modules_in(Path(__file__).parent.parent / "packages")
 #: ROS 2's packages that Navette provides, interface packages apart.

@@ -159,6 +159,9 @@ class PackageLoader(_LazyLoader):
     def child(self, name: str) -> Ros2Loader | None:
         if name in self.submodules():
             return PackageLoader(f"{self.name}.{name}", f"{self._alias_of}.{name}")
+        other = getattr(self._real, name, None)  # a module that has another name here
+        if isinstance(other, ModuleType):
+            return PackageLoader(f"{self.name}.{name}", other.__name__)
         if self._has_module_of(name):
             return PackageLoader(f"{self.name}.{name}", self._alias_of)
         return None
@@ -172,7 +175,7 @@ class PackageLoader(_LazyLoader):
         """
         if name == self.name:
             return True
-        if self.name.partition(".")[0] not in ("launch", "launch_ros", "tf2_ros"):
+        if self.name.partition(".")[0] not in _MODULE_PER_CLASS:
             return False
         start = name.replace("_", "")
         words = [each.replace("_", "").lower() for each in _public_names(self._real)]
@@ -247,6 +250,15 @@ def _module_name(interface: str) -> str:
     """Return the name of the module of an interface: ``LaserScan``: ``laser_scan``."""
     spaced = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface)
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", spaced).lower()
+
+
+_MODULE_PER_CLASS = (
+    "launch",
+    "launch_pytest",
+    "launch_ros",
+    "launch_testing",
+    "tf2_ros",
+)
 
 
 @cache

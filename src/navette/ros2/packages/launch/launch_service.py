@@ -82,8 +82,9 @@ class LaunchService:
         return self.context.loop
 
     def include_launch_description(self, description: LaunchDescription) -> None:
-        """Visit a description when the service runs."""
+        """Visit a description when the service runs, from any thread."""
         self.context.visit_later([description])
+        self.context.loop.call_soon_threadsafe(lambda: None, "launch")
 
     def emit_event(self, event: Event) -> None:
         """Queue an event from any thread."""

@@ -29,6 +29,8 @@ class ProcessAction(Protocol):
 
     def make_command(self, context: LaunchContext) -> LaunchCommand: ...
 
+    def keep_output(self, stream: str, data: bytes) -> None: ...
+
     def make_output(self, context: LaunchContext, label: str) -> LabelledOutput: ...
 
 
@@ -86,6 +88,7 @@ class LaunchedProcess(ManagedProcess):
 
         def report() -> None:
             output.write(stream, data)
+            self._action.keep_output(stream, data)
             self._context.emit_event_sync(kind(text=data, **details))
 
         self.loop.call_soon_threadsafe(report, self.label)

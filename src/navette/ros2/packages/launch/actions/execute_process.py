@@ -49,6 +49,7 @@ class ExecuteLocal(Action):
         sigkill_timeout: seconds from SIGTERM to SIGKILL.
         emulate_tty: accepted without effect; Python programs do not buffer output.
         output: ``screen`` (default), ``log``, ``both``, ``own_log``, or a dict.
+        cached_output: keep the output for ``get_stdout()`` and ``get_stderr()``.
         output_format: accepted where it is ROS 2's default.
         log_cmd: log the command line.
         on_exit: entities, or ``on_exit(event, context)``, for the exit.
@@ -92,6 +93,8 @@ class ExecuteLocal(Action):
         self.respawn_max_retries = respawn_max_retries
         self.required = required
         self._on_exit = on_exit
+        self._output: dict[str, bytearray] = {"stdout": bytearray()}
+        self._output["stderr"] = bytearray()
         self._process: LaunchedProcess | None = None
 
     def describe(self) -> str:
@@ -121,6 +124,26 @@ class ExecuteLocal(Action):
     def return_code(self) -> int | None:
         """Exit code; None before the exit."""
         return None if self._process is None else self._process.exit_code
+
+    def keep_output(self, stream: str, data: bytes) -> None:
+        """Store output for :meth:`get_stdout`, with ``cached_output``."""
+        if self.cached_output:
+            self._output[stream] += data
+
+    def get_stdout(self) -> str:
+        """Return the standard output so far, of an action with ``cached_output``."""
+        return self._cached("stdout")
+
+    def get_stderr(self) -> str:
+        """Return the standard error so far, of an action with ``cached_output``."""
+        return self._cached("stderr")
+
+    def _cached(self, stream: str) -> str:
+        if not self.cached_output:
+            raise InvalidLaunchValueError(
+                f"{self.describe()}: its output is kept with cached_output=True only"
+            )
+        return bytes(self._output[stream]).decode(errors="replace")
 
     def write(self, data: bytes) -> None:
         """Write to the standard input while the process runs."""

@@ -1,0 +1,5 @@
+"""Actions of test descriptions."""
+
+from navette.ros2.packages.launch_testing.actions import ReadyToTest
+
+__all__ = ["ReadyToTest"]

@@ -1,0 +1,162 @@
+"""Assertions about the output and the exit codes of processes."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from navette.ros2.packages.launch.events.process import ProcessExited
+from navette.ros2.packages.launch_testing.process_selection import (
+    NoMatchingProcessException,
+    resolveProcesses,
+)
+from navette.ros2.packages.launch_testing.text_matching import (
+    make_matcher,
+    without_colours,
+)
+
+__all__ = [
+    "EXIT_FORCED",
+    "EXIT_OK",
+    "EXIT_SIGINT",
+    "EXIT_SIGKILL",
+    "EXIT_SIGQUIT",
+    "EXIT_SIGSEGV",
+    "NoMatchingProcessException",
+    "SequentialTextChecker",
+    "assertExitCodes",
+    "assertInStderr",
+    "assertInStdout",
+    "assertInStream",
+    "assertSequentialStdout",
+]
+
+EXIT_OK, EXIT_FORCED = 0, 1
+EXIT_SIGINT, EXIT_SIGQUIT, EXIT_SIGKILL, EXIT_SIGSEGV = 130, 131, 137, 139
+
+_STREAMS = {"stdout": "from_stdout", "stderr": "from_stderr"}
+
+
+def assertExitCodes(  # noqa: N802 - ROS 2's name
+    proc_info: Any,
+    allowable_exit_codes: Sequence[int] = (EXIT_OK,),
+    process: Any = None,
+    cmd_args: str | None = None,
+    *,
+    strict_proc_matching: bool = True,
+) -> None:
+    """Fail if a process ended with another code.
+
+    Args:
+        process: see :func:`resolveProcesses`; default: all processes.
+    """
+    for code in allowable_exit_codes:
+        assert isinstance(code, int), f"exit code {code!r}: expected an integer"
+    found = resolveProcesses(
+        proc_info,
+        process=process,
+        cmd_args=cmd_args,
+        strict_proc_matching=strict_proc_matching,
+    )
+    for event in (proc_info[action] for action in found):
+        assert isinstance(event, ProcessExited), f"{event.process_name} still runs"
+        assert event.returncode in allowable_exit_codes, (
+            f"{event.process_name} ended with code {event.returncode}; allowed: "
+            f"{', '.join(map(str, allowable_exit_codes))}"
+        )
+
+
+def assertInStream(  # noqa: N802 - ROS 2's name
+    proc_output: Any,
+    expected_output: Any,
+    process: Any,
+    cmd_args: str | None = None,
+    *,
+    output_filter: Callable[[str], str] | None = None,
+    strict_proc_matching: bool = True,
+    strip_ansi_escape_sequences: bool = True,
+    stream: str = "stderr",
+) -> None:
+    """Fail if no process wrote the expected output to a stream.
+
+    Args:
+        expected_output: see :func:`make_matcher`.
+        process: see :func:`resolveProcesses`.
+        output_filter: applied to the output before the search.
+    """
+    is_found = make_matcher(expected_output)
+    found = resolveProcesses(
+        proc_output,
+        process=process,
+        cmd_args=cmd_args,
+        strict_proc_matching=strict_proc_matching,
+    )
+    for action in found:
+        text = _text(proc_output, action, stream)
+        if strip_ansi_escape_sequences:
+            text = without_colours(text)
+        if is_found(text if output_filter is None else output_filter(text)):
+            return
+    names = ", ".join(action.process_details["name"] for action in found)
+    raise AssertionError(f"{expected_output!r} not found in {stream} of {names}")
+
+
+def assertInStdout(  # noqa: N802 - ROS 2's name
+    proc_output: Any, expected_output: Any, process: Any, *args: Any, **kwargs: Any
+) -> None:
+    """Fail if no process wrote the expected output to its standard output."""
+    kwargs["stream"] = "stdout"
+    assertInStream(proc_output, expected_output, process, *args, **kwargs)
+
+
+def assertInStderr(  # noqa: N802 - ROS 2's name
+    proc_output: Any, expected_output: Any, process: Any, *args: Any, **kwargs: Any
+) -> None:
+    """Fail if no process wrote the expected output to its standard error."""
+    kwargs["stream"] = "stderr"
+    assertInStream(proc_output, expected_output, process, *args, **kwargs)
+
+
+def _text(proc_output: Any, action: Any, stream: str) -> str:
+    is_of_stream = _STREAMS[stream]
+    events = proc_output[action]
+    parts = [event.text for event in events if getattr(event, is_of_stream)]
+    return b"".join(parts).decode(errors="replace")
+
+
+class SequentialTextChecker:
+    """Finds texts one after another, each behind the one before."""
+
+    def __init__(self, output: str) -> None:
+        self._output = output
+        self._position = 0
+
+    def assertInText(self, msg: Any) -> bool:  # noqa: N802 - ROS 2's name
+        """Fail if the text is not found behind the one before."""
+        return self.assertInStdout(msg)
+
+    def assertInStdout(self, msg: Any) -> bool:  # noqa: N802 - ROS 2's name
+        """Fail if the text is not found behind the one before.
+
+        Args:
+            msg: a text or a compiled pattern.
+        """
+        rest = self._output[self._position :]
+        if isinstance(msg, str):
+            start = rest.find(msg)
+            end = start + len(msg)
+        else:
+            found = msg.search(rest)
+            start, end = found.span() if found else (-1, -1)
+        if start < 0:
+            raise AssertionError(f"{msg!r} not found in {rest[:2000]!r}")
+        self._position += end
+        return True
+
+
+@contextmanager
+def assertSequentialStdout(  # noqa: N802 - ROS 2's name
+    proc_output: Any, process: Any, cmd_args: str | None = None
+) -> Iterator[SequentialTextChecker]:
+    """Provide a checker of the order of a process's standard output."""
+    action = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)[0]
+    yield SequentialTextChecker(_text(proc_output, action, "stdout"))
