@@ -18,6 +18,25 @@ export interface Encoder {
 const decoders = new Map<string, Decoder>();
 const encoders = new Map<string, Encoder>();
 
+/** How the messages of a channel are written; schemaEncoding is missing at old servers. */
+export interface Encoded {
+  readonly encoding: string;
+  readonly schema: string;
+  readonly schemaEncoding?: string | undefined;
+}
+
+/** Whether the page can read a channel: CDR by a ROS 2 definition, or JSON. */
+export function isReadable({ encoding, schemaEncoding }: Encoded): boolean {
+  return encoding === "json" || (encoding === "cdr" && (schemaEncoding ?? "ros2msg") === "ros2msg");
+}
+
+const JSON_DECODER: Decoder = { decode: (data) => JSON.parse(new TextDecoder().decode(data)) as unknown };
+
+/** The decoder of a channel that is readable. */
+export function channelDecoder({ encoding, schema }: Encoded): Decoder {
+  return encoding === "json" ? JSON_DECODER : decoderOf(schema);
+}
+
 /** A decoder for a definition in the format ros2msg. */
 export function decoderOf(definition: string): Decoder {
   let decoder = decoders.get(definition);

@@ -42,7 +42,13 @@ export class FoxgloveConnection implements Connection {
   readonly #assets = new Map<number, { resolve: (data: ArrayBuffer) => void; reject: (reason: Error) => void }>();
   readonly #events = new Events<ConnectionEvents>();
   readonly #topics = new TopicStore();
-  readonly #subscriptions = new Subscriptions((topic) => this.#topics.channelsOf(topic));
+  readonly #subscriptions = new Subscriptions(
+    (topic) => this.#topics.channelsOf(topic),
+    ({ topic, encoding }) => {
+      const text = `Messages of ${topic} are encoded as ${encoding}, which this page cannot read (cdr of ROS 2 and json).`;
+      this.#events.emit("notice", { level: "warning", text });
+    },
+  );
   readonly #parameters = new ParameterStore();
   readonly #services = new ServiceCalls();
   readonly #playback = new PlaybackControl((frame) => this.#link?.socket.send(frame));

@@ -5,7 +5,7 @@
 
 import type { Channel } from "@foxglove/ws-protocol";
 import { nextFrame } from "../ui/frames";
-import { decoderOf } from "./codec";
+import { channelDecoder, isReadable } from "./codec";
 import type { Dispose, Message, Statistics, SubscribeOptions } from "./connection";
 import { Meter } from "./statistics";
 
@@ -126,7 +126,13 @@ export class Subscriptions {
   #wire: Wire | null = null;
   #isHidden = false;
 
-  constructor(private readonly channelsOf: (topic: string) => readonly Channel[]) {}
+  readonly #refused = new Set<string>();
+
+  constructor(
+    private readonly channelsOf: (topic: string) => readonly Channel[],
+    /** Called once for a topic whose messages the page cannot read. */
+    private readonly onUnreadable: (channel: Channel) => void,
+  ) {}
 
   add(topic: string, options: SubscribeOptions, callback: (message: Message<never>) => void): Dispose {
     let subscription = this.#topics.get(topic);
@@ -192,7 +198,7 @@ export class Subscriptions {
 
   #sync(topic: string, subscription: TopicSubscription): void {
     const isWanted = this.#wire !== null && (!this.#isHidden || subscription.wantsEvery);
-    const wanted = isWanted ? this.channelsOf(topic) : [];
+    const wanted = isWanted ? this.channelsOf(topic).filter((channel) => this.#canRead(channel)) : [];
     for (const [id, channel] of subscription.wired) {
       if (wanted.some((each) => each.id === channel.id)) continue;
       subscription.wired.delete(id);
@@ -206,6 +212,15 @@ export class Subscriptions {
       subscription.wired.set(id, channel);
       this.#byWire.set(id, subscription);
     }
+  }
+
+  #canRead(channel: Channel): boolean {
+    if (isReadable(channel)) return true;
+    if (!this.#refused.has(channel.topic)) {
+      this.#refused.add(channel.topic);
+      this.onUnreadable(channel);
+    }
+    return false;
   }
 
   #unwire(subscription: TopicSubscription): void {
@@ -228,7 +243,7 @@ function messageOf({ stampNs, data, channel }: Raw): Message {
     bytes: data.byteLength,
     get value(): unknown {
       if (!isDecoded) {
-        value = decoderOf(channel.schema).decode(data);
+        value = channelDecoder(channel).decode(data);
         isDecoded = true;
       }
       return value;
