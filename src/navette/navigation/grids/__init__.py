@@ -61,7 +61,7 @@ from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.regions import SquareRegion
-from navette.navigation.grids.sparse import padded_sparse, sparse_zeros
+from navette.navigation.grids.sparse import RowSpans, padded_sparse, sparse_zeros
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     cell_points,
@@ -85,6 +85,7 @@ __all__ = [
     "upward_of",
     "CellWindow",
     "NO_CELLS",
+    "RowSpans",
     "padded_sparse",
     "sparse_zeros",
     "SquareRegion",

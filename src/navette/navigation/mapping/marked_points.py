@@ -20,6 +20,12 @@ class MarkedPoints:
         self._points, self._rows = _NO_POINTS, _NO_ROWS
         self._stale: CellWindow | None = None  # None: everything
 
+    def grow(self, rows_before: int) -> None:
+        """Follow a map that has got rows before its first, and more elsewhere."""
+        self._rows = self._rows + rows_before
+        if self._stale is not None:
+            self._stale = self._stale.shifted(rows_before, 0)
+
     def drop(self, window: CellWindow) -> None:
         """Drop the points of a part of the map that has changed."""
         if self._stale is not None:

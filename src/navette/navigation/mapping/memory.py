@@ -16,6 +16,7 @@ from navette.navigation.grids import (
     CellWindow,
     Changes,
     GridSpec,
+    RowSpans,
     SquareRegion,
     accumulate,
     cells_in_footprint,
@@ -100,21 +101,22 @@ class MapMemory:
 
     def reset(self) -> None:
         """Clear the map: the loaded map, else unknown cells of the initial extent."""
+        # What clearing restores, and grows with the map; None: unknown cells.
+        self._base: NDArray[np.int8] | None = None
         if self._loaded is not None:
-            cells, self.spec = self._loaded
+            self._base, self.spec = self._loaded
+            self._cells = self._base.copy()
         else:
             self.spec = self._initial_spec()
-            cells = np.full(self.spec.shape, UNKNOWN, np.int8)
-        # What clearing restores; grows with the map.
-        self._base = cells
-        self._cells = cells.copy()
+            self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
         self._masks = sparse_zeros(self.spec.shape, np.uint64)
         self._vanished = VanishedCells(self.spec.shape)
+        self._written = RowSpans(self.spec.height)  # of the two above
         self._marked = MarkedPoints()
         self._changed: CellWindow | None = None
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
-            self._log_odds = self._evidence_of(cells)
+            self._log_odds = self._evidence_of(self._cells)
 
     def load(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map by (H, W) and its geometry, also for :meth:`reset`."""
@@ -127,10 +129,10 @@ class MapMemory:
             self.reset()
             return
         cleared = region.mask(self.spec)
-        self._cells[cleared] = self._base[cleared]
+        self._cells[cleared] = UNKNOWN if self._base is None else self._base[cleared]
         self._masks[cleared] = 0
         if self._log_odds is not None:
-            self._log_odds[cleared] = self._evidence_of(self._base[cleared])
+            self._log_odds[cleared] = self._evidence_of(self._cells[cleared])
         self._note_change(CellWindow.whole(self.spec.shape))
 
     def fuse(self, costmap: PlacedCostmap) -> bool:
@@ -140,6 +142,7 @@ class MapMemory:
             return False
         self._grow(corners)
         window = self._window_of(costmap)
+        self._written.add(window)
         kept = self._kept(costmap, window)
         lethal_cells = self._mark(costmap.hits)
         if self._own is not None:
@@ -260,12 +263,14 @@ class MapMemory:
             return
         pad = (growth.rows, growth.columns)
         self._changed = None
-        self._marked.clear()
+        self._marked.grow(growth.rows[0])
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
-        self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
-        self._masks = padded_sparse(self._masks, pad)
-        self._vanished.grow(pad)
+        if self._base is not None:
+            self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
+        self._masks = padded_sparse(self._masks, pad, self._written)
+        self._vanished.grow(pad, self._written)
+        self._written.grow(pad)
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import CellWindow, padded_sparse
+from navette.navigation.grids import CellWindow, RowSpans, padded_sparse
 
 Points = NDArray[np.float64]
 Values = NDArray[np.float64]
@@ -32,9 +32,11 @@ class VanishedCells:
     def __init__(self, shape: tuple[int, int]) -> None:
         self._passes = np.zeros(shape, np.uint8)
 
-    def grow(self, pad: tuple[tuple[int, int], tuple[int, int]]) -> None:
+    def grow(
+        self, pad: tuple[tuple[int, int], tuple[int, int]], written: RowSpans
+    ) -> None:
         """Add cells around, as :func:`numpy.pad` does."""
-        self._passes = padded_sparse(self._passes, pad)
+        self._passes = padded_sparse(self._passes, pad, written)
 
     def update(
         self, cells: NDArray[np.int64], beside: NDArray[np.bool_], window: CellWindow

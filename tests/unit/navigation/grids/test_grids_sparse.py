@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from navette.navigation.grids import padded_sparse, sparse_zeros
+from navette.navigation.grids import CellWindow, RowSpans, padded_sparse, sparse_zeros
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (8000, 8000)])
@@ -22,4 +22,22 @@ def test_padding_equals_that_of_numpy() -> None:
     array = rng.integers(0, 2**63, (40, 30)).astype(np.uint64)
     array[rng.random(array.shape) < 0.95] = 0
     pad = ((3, 0), (5, 7))
-    np.testing.assert_array_equal(padded_sparse(array, pad), np.pad(array, pad))
+    whole = RowSpans(40)
+    whole.add(CellWindow.whole(array.shape))
+    padded = padded_sparse(array, pad, whole)
+    np.testing.assert_array_equal(padded, np.pad(array, pad))
+
+
+def test_only_what_was_written_is_copied_when_an_array_grows_again() -> None:
+    array = np.zeros((40, 30), np.uint64)
+    written = RowSpans(40)
+    for window, pad in (
+        (CellWindow(5, 9, 20, 30), ((2, 0), (0, 10))),
+        (CellWindow(6, 12, 0, 4), ((0, 3), (5, 0))),
+        (CellWindow(7, 8, 39, 40), ((1, 1), (1, 1))),
+    ):
+        array[window.slices] = 9
+        written.add(window)
+        before, array = array, padded_sparse(array, pad, written)
+        np.testing.assert_array_equal(array, np.pad(before, pad))
+        written.grow(pad)
