@@ -14,6 +14,7 @@ from typing import Any
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped, Quaternion
+from navette.msgs.known_fields import made
 from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.msgs.nav2_msgs.msg import BehaviorTreeLog, BehaviorTreeStatusChange
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
@@ -250,10 +251,11 @@ class MissionNode(StageNode):
             return
         stamp = ns_to_stamp(self._now_ns)
         events = [
-            BehaviorTreeStatusChange(
+            made(
+                BehaviorTreeStatusChange,
                 timestamp=stamp,
                 node_name=change.node,
-                uid=change.uid,
+                uid=change.uid,  # since Jazzy
                 previous_status=change.before,
                 current_status=change.now,
             )

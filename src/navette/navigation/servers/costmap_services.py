@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from navette.geometry import Footprint, Pose2
+from navette.msgs.known_fields import fill
 from navette.msgs.nav2_msgs.srv import (
     ClearCostmapAroundPose,
     ClearCostmapAroundRobot,
@@ -84,12 +85,14 @@ class CostmapServices:
     def _clear_all(self, request: Any, response: Any) -> Any:
         self._node.get_logger().info(f"{self._name}: cleared on request")
         self._source.clear(None)
+        fill(response, success=True)  # since Lyrical; also below
         return response
 
     def _clear_around_robot(self, request: Any, response: Any) -> Any:
         robot = self._robot()
         if robot is not None:
-            self._clear(robot, request.reset_distance)
+            cleared = self._clear(robot, request.reset_distance)
+            fill(response, success=cleared)
         return response
 
     def _clear_around_pose(self, request: Any, response: Any) -> Any:
@@ -102,26 +105,30 @@ class CostmapServices:
                 f"{text} not used; expected finite values and a frame on /tf"
             )
         else:
-            self._clear(grid_T_frame @ pose, request.reset_distance)
+            cleared = self._clear(grid_T_frame @ pose, request.reset_distance)
+            fill(response, success=cleared)
         return response
 
     def _clear_except(self, request: Any, response: Any) -> Any:
         robot = self._robot()
         if robot is not None:
-            self._clear(robot, request.reset_distance, outside=True)
+            cleared = self._clear(robot, request.reset_distance, outside=True)
+            fill(response, success=cleared)
         return response
 
-    def _clear(self, at: Pose2, edge: float, *, outside: bool = False) -> None:
+    def _clear(self, at: Pose2, edge: float, *, outside: bool = False) -> bool:
+        """Clear a square; return whether its edge is valid."""
         if not (np.isfinite(edge) and edge >= 0):
             self._node.get_logger().error(
                 f"{self._name}: reset_distance {edge} not used; must be finite and >= 0"
             )
-            return
+            return False
         self._node.get_logger().info(
             f"{self._name}: cleared {'all but ' if outside else ''}{edge:g} m "
             f"around ({at.x:.6g}, {at.y:.6g})"
         )
         self._source.clear(SquareRegion(at.x, at.y, edge, outside))
+        return True
 
     def _robot(self) -> Pose2 | None:
         robot = self._source.frame_on_grid(self._source.robot_frame())

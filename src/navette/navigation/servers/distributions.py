@@ -15,10 +15,15 @@ def add_missed_waypoint(
 ) -> None:
     """Add a waypoint to the missed ones of a result of FollowWaypoints.
 
-    Elements are ``MissedWaypoint`` up to Jazzy, ``WaypointStatus`` since Kilted.
+    Elements are indices up to Humble, ``MissedWaypoint`` up to Jazzy,
+    ``WaypointStatus`` since Kilted.
     """
     from navette.msgs.nav2_msgs import msg
 
+    kind = result.get_fields_and_field_types()["missed_waypoints"]
+    if kind.startswith("sequence<int32"):
+        result.missed_waypoints.append(index)
+        return
     if hasattr(msg, "WaypointStatus"):
         missed: Any = msg.WaypointStatus(
             waypoint_status=msg.WaypointStatus.FAILED,

@@ -29,9 +29,9 @@ _GOALS = {
     _Command.RESUME: "active",
     _Command.RESET: "unconfigured",
     _Command.SHUTDOWN: "finalized",
-    _Command.CONFIGURE: "inactive",
-    _Command.CLEANUP: "unconfigured",
 }
+if hasattr(_Command, "CONFIGURE"):  # since Jazzy
+    _GOALS |= {_Command.CONFIGURE: "inactive", _Command.CLEANUP: "unconfigured"}
 
 
 def state_of_command(command: int) -> str:

@@ -4,6 +4,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+from navette.msgs.known_fields import made
 from navette.msgs.lifecycle_msgs.msg import State as StateMsg
 from navette.msgs.lifecycle_msgs.msg import (
     Transition,
@@ -25,6 +26,7 @@ from navette.runtime.lifecycle.state_machine import (
 from navette.runtime.node import Node
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import QoSProfile
+from navette.runtime.time import ns_to_stamp
 
 MsgT = TypeVar("MsgT")
 
@@ -169,14 +171,16 @@ class LifecycleNodeMixin(ManagedEntity):
         self._state_machine.state = transition.goal
         if self._transition_events is not None:
             described = _description(transition)
-            self._transition_events.publish(
-                TransitionEvent(
-                    timestamp=self._node.get_clock().now().nanoseconds,
-                    transition=described.transition,
-                    start_state=described.start_state,
-                    goal_state=described.goal_state,
-                )
+            now_ns = self._node.get_clock().now().nanoseconds
+            event = made(
+                TransitionEvent,
+                timestamp=now_ns,
+                stamp=ns_to_stamp(now_ns),  # since Lyrical
+                transition=described.transition,
+                start_state=described.start_state,
+                goal_state=described.goal_state,
             )
+            self._transition_events.publish(event)
 
     def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
         """Run the callback of the current transition state.

@@ -1,8 +1,9 @@
 """Action server of a stage with one active goal, as Nav2's SimpleActionServer."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
+from navette.msgs.known_fields import made
 from navette.runtime.action.goal_states import CancelResponse, GoalEvent, GoalResponse
 from navette.runtime.action.server import ActionServer
 from navette.runtime.action.server_goal_handle import ServerGoalHandle
@@ -18,6 +19,30 @@ _LONGEST_STOP_NS = 2_000_000_000
 _SETTLE_NS = 200_000_000
 
 
+class GoalEnd(NamedTuple):
+    """How a goal ends: its result, and whether it is aborted."""
+
+    result: Any
+    failed: bool = False
+
+
+def goal_end(
+    action: Any, code: str = "NONE", reason: str = "", **fields: Any
+) -> GoalEnd:
+    """Return the end of a goal, with a result as the chosen distribution defines it.
+
+    Args:
+        action: the action's type. Results have no ``error_code`` before Jazzy.
+        code: name of Nav2's error code; ``NONE`` on success.
+        reason: text of the error.
+        fields: other fields of the result.
+    """
+    result_type = action.Result
+    number = getattr(result_type, code, 0)
+    result = made(result_type, error_code=number, error_msg=reason, **fields)
+    return GoalEnd(result, failed=code != "NONE")
+
+
 class GoalServer:
     """Action server whose owner steps the goal; a new goal preempts the active one.
 
@@ -27,7 +52,7 @@ class GoalServer:
 
     Args:
         node: the node that offers the action.
-        action: the action's type, with ``error_code`` and ``error_msg`` in its result.
+        action: the action's type.
         name: the action's name.
         on_goal: called with the request of each accepted goal.
         accepts: whether goals are accepted now; default: always.
@@ -79,40 +104,40 @@ class GoalServer:
     def publish_feedback(self, **fields: Any) -> None:
         """Publish feedback on the active goal."""
         if self._goal is not None:
-            self._goal.publish_feedback(self._action.Feedback(**fields))
+            self._goal.publish_feedback(made(self._action.Feedback, **fields))
 
-    def finish(self, result: Any) -> None:
-        """End the goal: succeeded without an error code, otherwise aborted."""
+    def finish(self, end: GoalEnd) -> None:
+        """End the goal: aborted if it failed, otherwise succeeded."""
         goal = self._take()
         if goal is not None:
-            end = goal.abort if result.error_code else goal.succeed
-            end(result)
+            report = goal.abort if end.failed else goal.succeed
+            report(end.result)
 
-    def abort(self, result: Any) -> None:
-        """End the goal as aborted, also without an error code."""
+    def abort(self, end: GoalEnd) -> None:
+        """End the goal as aborted."""
         goal = self._take()
         if goal is not None:
-            goal.abort(result)
+            goal.abort(end.result)
 
-    def cancel(self, result: Any) -> None:
+    def cancel(self, end: GoalEnd) -> None:
         """End the goal as cancelled on the client's request."""
         goal = self._take()
         if goal is not None:
-            goal.canceled(result)
+            goal.canceled(end.result)
 
-    def end(self, result: Any) -> None:
+    def end(self, end: GoalEnd) -> None:
         """End the goal: cancelled if requested, otherwise as :meth:`finish`."""
         if self.cancel_requested:
-            self.cancel(result)
+            self.cancel(end)
         else:
-            self.finish(result)
+            self.finish(end)
 
     def _take(self) -> ServerGoalHandle | None:
         goal, self._goal = self._goal, None
         return goal
 
     def _accept(self, goal: ServerGoalHandle) -> None:
-        self.abort(self._action.Result(error_msg=PREEMPTED))
+        self.abort(goal_end(self._action, reason=PREEMPTED))
         if not goal.is_cancel_requested:
             goal.update_state(GoalEvent.EXECUTE)
         self._goal = goal
@@ -127,11 +152,11 @@ def serve_query(
     node: Node,
     action: Any,
     name: str,
-    answer: Callable[[Any], Any],
+    answer: Callable[[Any], GoalEnd],
     *,
     accepts: Callable[[], bool] = lambda: True,
 ) -> GoalServer:
-    """Offer an action whose result ``answer(goal)`` computes at once.
+    """Offer an action whose end ``answer(goal)`` computes at once.
 
     The result is there before a request to cancel could arrive.
     """
@@ -156,17 +181,17 @@ class DriveGoalServer(GoalServer):
         """Whether the goal has a result and the robot is not known to be at rest."""
         return self._ending is not None
 
-    def end_at_rest(self, result: Any, now_ns: int, *, has_moved: bool = True) -> None:
-        """Store the result, to :meth:`end` the goal with when the robot is at rest.
+    def end_at_rest(self, end: GoalEnd, now_ns: int, *, has_moved: bool = True) -> None:
+        """Store the end, to :meth:`end` the goal with when the robot is at rest.
 
         Args:
-            result: the result.
+            end: the result, and whether the goal failed.
             now_ns: time of the node's clock.
             has_moved: whether the goal has commanded motion.
         """
         if self._goal is None or self._ending is not None:
             return
-        self._ending = lambda: self.end(result)
+        self._ending = lambda: self.end(end)
         self._settled_ns = now_ns + _SETTLE_NS if has_moved else now_ns
         self._deadline_ns = now_ns + _LONGEST_STOP_NS
 

@@ -15,7 +15,7 @@ from navette.navigation.behaviors.runner import (
 from navette.navigation.behaviors.servers.actions import BehaviorAction
 from navette.navigation.grids import CollisionCheck
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import DriveGoalServer
+from navette.runtime.stage.goal_server import DriveGoalServer, GoalEnd, goal_end
 from navette.runtime.time import Duration
 
 
@@ -119,13 +119,10 @@ class BehaviorServer:
         else:
             self._goals.end(self._result(end))
 
-    def _result(self, end: BehaviorEnd) -> Any:
-        result_type = self.spec.action.Result
+    def _result(self, end: BehaviorEnd) -> GoalEnd:
         elapsed = Duration(nanoseconds=max(0, self._now_ns - self._start_ns))
-        return result_type(
-            error_code=getattr(result_type, end.code, 0),  # Wait has no codes
-            error_msg=end.reason,
-            total_elapsed_time=elapsed.to_msg(),
+        return goal_end(
+            self.spec.action, end.code, end.reason, total_elapsed_time=elapsed.to_msg()
         )
 
     @property

@@ -8,6 +8,7 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
+from navette.msgs.classes import get_message_class
 from navette.msgs.nav2_msgs.action import FollowPath
 from navette.navigation.control.follow_monitor import FollowMonitor
 from navette.navigation.control.methods import CONTROLLERS
@@ -16,15 +17,14 @@ from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import DriveGoalServer
+from navette.runtime.stage.goal_server import DriveGoalServer, GoalEnd, goal_end
 from navette.runtime.stage.path_messages import Poses, moved, poses_of
+from navette.runtime.time import ns_to_stamp
 
 # Names of Nav2's default parameters; the empty name selects the only one.
 _CONTROLLERS = ("", "FollowPath", *CONTROLLERS)
 _GOAL_CHECKERS = ("", "general_goal_checker", "goal_checker")
 _PROGRESS_CHECKERS = ("", "progress_checker")
-
-Result = FollowPath.Result
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class FollowPathServer:
         self._monitor.pause(now_ns - self._stepped_ns)
         self._stepped_ns = now_ns
         if self._goals.cancel_requested:
-            self._end(Result(error_msg="cancelled"))
+            self._end(goal_end(FollowPath, reason="cancelled"))
         self._goals.check_rest(None, now_ns)
 
     def step(
@@ -93,29 +93,39 @@ class FollowPathServer:
             return
         self._stepped_ns = now_ns = self._now_ns
         if not self._goals.is_ending:
-            self._goals.publish_feedback(
-                distance_to_goal=output.distance_left_m, speed=abs(output.command.speed)
-            )
+            self._goals.publish_feedback(**self._progress(output))
             self._decide(self._monitor, output.state, inputs.pose if fresh else None)
         motion = (inputs.speed, inputs.turn_rate) if fresh else None
         self._goals.check_rest(motion, now_ns)
 
+    def _progress(self, output: FollowerOutput) -> dict[str, Any]:
+        """Return the fields of the feedback, which are one message since Lyrical."""
+        left_m, speed = output.distance_left_m, abs(output.command.speed)
+        fields: dict[str, Any] = {"distance_to_goal": left_m, "speed": speed}
+        if "tracking_feedback" in FollowPath.Feedback.get_fields_and_field_types():
+            kind: Any = get_message_class("nav2_msgs/msg/TrackingFeedback")
+            feedback = kind(**fields, remaining_path_length=left_m)
+            feedback.header.stamp = ns_to_stamp(self._now_ns)
+            feedback.header.frame_id = self._context.params().map_frame
+            return {"tracking_feedback": feedback}
+        return fields
+
     def interrupt(self, reason: str) -> None:
         """Abort the goal at once: something else commands the follower."""
-        self._goals.abort(Result(error_code=Result.UNKNOWN, error_msg=reason))
+        self._goals.abort(goal_end(FollowPath, "UNKNOWN", reason))
 
     def stop(self, reason: str) -> None:
         """Stop the robot and abort the goal when it is at rest."""
         if self._goals.is_active:
-            self._end(Result(error_code=Result.UNKNOWN, error_msg=reason))
+            self._end(goal_end(FollowPath, "UNKNOWN", reason))
 
     def _decide(
         self, monitor: FollowMonitor, state: ControlState, pose: Pose2 | None
     ) -> None:
         if self._goals.cancel_requested:
-            self._end(Result(error_msg="cancelled"))
+            self._end(goal_end(FollowPath, reason="cancelled"))
         elif state is ControlState.REACHED:
-            self._end(Result())
+            self._end(goal_end(FollowPath))
         elif state is ControlState.MISSED_GOAL:
             text = "the path ended farther from its end than goal_tolerance_m"
             self._fail("FAILED_TO_MAKE_PROGRESS", text)
@@ -149,12 +159,12 @@ class FollowPathServer:
 
     def _fail(self, code: str, reason: str) -> None:
         self._node.get_logger().warning(f"follow_path: {code}: {reason}")
-        self._end(Result(error_code=getattr(Result, code), error_msg=reason))
+        self._end(goal_end(FollowPath, code, reason))
 
-    def _end(self, result: Any) -> None:
+    def _end(self, end: GoalEnd) -> None:
         """Stop the robot; the result follows when it is at rest."""
         has_moved = self._context.stop()
-        self._goals.end_at_rest(result, self._now_ns, has_moved=has_moved)
+        self._goals.end_at_rest(end, self._now_ns, has_moved=has_moved)
 
     @property
     def _now_ns(self) -> int:
@@ -168,7 +178,7 @@ def _unknown_plugin(goal: Any) -> tuple[str, str] | None:
         ("goal_checker_id", _GOAL_CHECKERS, "UNKNOWN"),
         ("progress_checker_id", _PROGRESS_CHECKERS, "UNKNOWN"),
     ):
-        name = getattr(goal, field)
+        name = getattr(goal, field, "")  # not every distribution has each
         if name not in known:
             return code, f"{field} {name!r}: unknown; known: {', '.join(known[1:])}"
     return None

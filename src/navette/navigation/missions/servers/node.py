@@ -14,6 +14,7 @@ from navette.errors import FileFormatError
 from navette.msgs.action_msgs.msg import GoalStatus
 from navette.msgs.builtin_interfaces.msg import Duration
 from navette.msgs.geometry_msgs.msg import PoseStamped
+from navette.msgs.known_fields import fill
 from navette.msgs.nav2_msgs.action import (
     FollowWaypoints,
     NavigateThroughPoses,
@@ -42,8 +43,9 @@ from navette.runtime.future import Future
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.time import ns_to_stamp
 
-NO_TREE = 9002
-"""Error code of a behaviour tree that cannot be loaded (Nav2, from Kilted on)."""
+NO_TREE = "FAILED_TO_LOAD_BEHAVIOR_TREE"
+"""Nav2's error code, from Kilted on."""
+_NO_TREE_UP_TO_JAZZY = 9002
 NO_GOALS = "no poses given; at least one is needed"
 _LONGEST_S = 2**31 - 1
 _KEPT_ENDS = 16
@@ -142,7 +144,7 @@ class NavigationServers:
         tree = self._tree(goal, self._params.through_poses_tree)
         poses = poses_in(goal.poses)
         if not poses:
-            result.error_msg = NO_GOALS
+            fill(result, error_msg=NO_GOALS)
             handle.abort()
             return result
         await self._navigate(handle, poses, tree, result, through=True)
@@ -171,7 +173,8 @@ class NavigationServers:
             self._navigator.start(navigation)
         except FileFormatError as error:
             self._node.get_logger().error(f"goal aborted: {error}")
-            result.error_code, result.error_msg = NO_TREE, str(error)
+            code = getattr(result, NO_TREE, _NO_TREE_UP_TO_JAZZY)
+            fill(result, error_code=code, error_msg=str(error))
             handle.abort()
             return
         key = bytes(handle.goal_id.uuid)
@@ -181,7 +184,7 @@ class NavigationServers:
         assert end is not None, "a navigation ends with a result"
         self._ends[key] = end
         del self._running[key]
-        result.error_code, result.error_msg = end.error_code, end.text
+        fill(result, error_code=end.error_code, error_msg=end.text)
         if end.how == REACHED:
             handle.succeed()
         elif end.how == CANCELED and handle.is_cancel_requested:
@@ -203,13 +206,14 @@ class NavigationServers:
 
     async def _follow_waypoints(self, handle: Any) -> Any:
         result = FollowWaypoints.Result()
-        poses, first = handle.request.poses, handle.request.goal_index
+        # Before Jazzy, goals have neither loops nor a first waypoint.
+        loops = getattr(handle.request, "number_of_loops", 0)
+        poses, first = handle.request.poses, getattr(handle.request, "goal_index", 0)
         key = self._newest_waypoints = bytes(handle.goal_id.uuid)
         if not poses[first:]:
-            result.error_code, result.error_msg = result.UNKNOWN, NO_GOALS
-            handle.abort()
+            _fail(handle, result, NO_GOALS)
             return result
-        for loop in range(handle.request.number_of_loops + 1):
+        for loop in range(loops + 1):
             for index in range(0 if loop else first, len(poses)):
                 handle.publish_feedback(
                     FollowWaypoints.Feedback(current_waypoint=index)
@@ -218,10 +222,8 @@ class NavigationServers:
                 if handle.is_cancel_requested:
                     handle.canceled()
                     return result
-                if response is None or response.result.error_msg == PREEMPTED_TEXT:
-                    result.error_code = result.UNKNOWN
-                    result.error_msg = PREEMPTED_TEXT
-                    handle.abort()
+                if response is None or _text_of(response.result) == PREEMPTED_TEXT:
+                    _fail(handle, result, PREEMPTED_TEXT)
                     return result
                 if response.status != GoalStatus.STATUS_SUCCEEDED:
                     _note_missed(result, index, poses[index], response.result)
@@ -229,8 +231,7 @@ class NavigationServers:
                         handle.abort()
                         return result
         if len(result.missed_waypoints) == len(poses):
-            result.error_code = result.UNKNOWN
-            handle.abort()
+            _fail(handle, result, _text_of(result))
             return result
         handle.succeed()
         return result
@@ -252,10 +253,20 @@ class NavigationServers:
             del self._waypoints[key]
 
 
+def _fail(handle: Any, result: Any, text: str) -> None:
+    fill(result, error_code=getattr(result, "UNKNOWN", 0), error_msg=text)
+    handle.abort()
+
+
+def _text_of(result: Any) -> str:
+    """Return the error of a result; Humble's have none."""
+    return getattr(result, "error_msg", "")
+
+
 def _note_missed(result: Any, index: int, pose: PoseStamped, of_goal: Any) -> None:
-    code, text = of_goal.error_code, of_goal.error_msg
+    code, text = getattr(of_goal, "error_code", 0), _text_of(of_goal)
     add_missed_waypoint(result, index, pose, code, text)
-    result.error_msg = of_goal.error_msg
+    fill(result, error_msg=text)
 
 
 def _feedback(handle: Any, progress: NavigationProgress, robot: NodeRobot) -> Any:

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from py_trees.common import Status
 
+from navette.msgs.known_fields import made, several_poses
 from navette.navigation.missions.tree.behaviour import (
     FAILURE,
     RUNNING,
@@ -123,7 +124,11 @@ class ActionLeaf(CallLeaf):
         """
 
     def new_goal(self, **fields: Any) -> Any:
-        return action_interface(self.ACTION).Goal(**fields)
+        """Return the goal message, without fields that the distribution lacks."""
+        kind = action_interface(self.ACTION).Goal
+        for name in fields.keys() & {"goals", "poses"}:
+            fields[name] = several_poses(kind, name, fields[name])
+        return made(kind, **fields)
 
     def start(self) -> ServerCall:
         name = self.input("server_name") or self.SERVER

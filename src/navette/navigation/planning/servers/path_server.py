@@ -12,6 +12,7 @@ import numpy as np
 
 from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import PoseStamped
+from navette.msgs.known_fields import fill
 from navette.msgs.nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
 from navette.msgs.nav2_msgs.srv import IsPathValid
 from navette.msgs.nav_msgs.msg import Path
@@ -29,7 +30,7 @@ from navette.navigation.servers.distributions import poses_in
 from navette.runtime import Stopwatch
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import GoalServer
+from navette.runtime.stage.goal_server import GoalEnd, GoalServer, goal_end
 from navette.runtime.stage.path_messages import (
     has_heading,
     moved,
@@ -114,7 +115,7 @@ class PathServer:
         self._serve(
             ComputePathToPose,
             "compute_path_to_pose",
-            lambda goal: [goal.goal],
+            lambda goal: [*getattr(goal, "viapoints", ()), goal.goal],
             accepts,
         )
         self._serve(
@@ -136,15 +137,15 @@ class PathServer:
             self._node,
             action,
             name,
-            lambda goal: self._compute(server, action.Result(), goal, goals_of(goal)),
+            lambda goal: self._compute(server, action, goal, goals_of(goal)),
             accepts=accepts,
-            on_cancel=lambda: server.end(action.Result()),
+            on_cancel=lambda: server.end(goal_end(action)),
         )
 
     def _compute(
-        self, server: GoalServer, result: Any, goal: Any, goals: list[PoseStamped]
+        self, server: GoalServer, action: Any, goal: Any, goals: list[PoseStamped]
     ) -> None:
-        """Fill in the result in the worker, unless the goal ends before."""
+        """Compute the result in the worker, unless the goal ends before."""
         timer = Stopwatch()
         active = server.goal
 
@@ -160,17 +161,16 @@ class PathServer:
             try:
                 _check(route, request)
             except _RequestError as error:
-                server.end(self._refused(result, error))
+                server.end(self._refused(action, error))
                 return
-            result.path = path
-            result.planning_time = Duration(seconds=timer.elapsed_s).to_msg()
+            planning_time = Duration(seconds=timer.elapsed_s).to_msg()
             self._context.publish_plan(path)
-            server.end(result)
+            server.end(goal_end(action, path=path, planning_time=planning_time))
 
         try:
             request = self._request(goal, goals)
         except _RequestError as error:
-            server.end(self._refused(result, error))
+            server.end(self._refused(action, error))
             return
         self._context.worker.run(
             compute,
@@ -178,11 +178,9 @@ class PathServer:
             is_dropped=lambda: server.goal is not active,
         )
 
-    def _refused(self, result: Any, error: _RequestError) -> Any:
+    def _refused(self, action: Any, error: _RequestError) -> GoalEnd:
         self._node.get_logger().warning(f"path request: {error.code}: {error}")
-        result.error_code = getattr(result, error.code)
-        result.error_msg = str(error)
-        return result
+        return goal_end(action, error.code, str(error))
 
     def _request(self, goal: Any, goals: list[PoseStamped]) -> _PathRequest:
         planner = self._planner(goal.planner_id)
@@ -238,6 +236,7 @@ class PathServer:
         if planner is None or poses is None or len(poses) == 0:
             return response
         blocked = blocked_poses(planner, poses, context.robot())
+        fill(response, success=True)
         response.is_valid = len(blocked) == 0
         response.invalid_pose_indices = blocked.tolist()
         return response

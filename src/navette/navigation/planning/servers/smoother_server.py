@@ -10,7 +10,7 @@ from navette.navigation.planning.path_smoothing import smooth_path
 from navette.navigation.planning.servers.path_server import PlanningContext
 from navette.runtime import Stopwatch
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import serve_query
+from navette.runtime.stage.goal_server import GoalEnd, goal_end, serve_query
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.time import Duration
 
@@ -18,8 +18,6 @@ SMOOTHERS = ("", "simple_smoother")
 """The empty name selects the only one; the other is that of Nav2's parameters."""
 
 _MOST_POSES = 100_000
-
-Result = SmoothPath.Result
 
 
 class SmootherServer:
@@ -32,30 +30,32 @@ class SmootherServer:
         self._context = context
         serve_query(node, SmoothPath, "smooth_path", self._answer, accepts=accepts)
 
-    def _answer(self, goal: Any) -> Any:
+    def _answer(self, goal: Any) -> GoalEnd:
         timer = Stopwatch()
-        result = self._smoothed(goal)
-        result.smoothing_duration = Duration(seconds=timer.elapsed_s).to_msg()
-        if result.error_code:
-            self._node.get_logger().warning(f"smooth_path: {result.error_msg}")
-        return result
+        end = self._smoothed(goal)
+        end.result.smoothing_duration = Duration(seconds=timer.elapsed_s).to_msg()
+        return end
 
-    def _smoothed(self, goal: Any) -> Any:
+    def _refused(self, code: str, reason: str, **fields: Any) -> GoalEnd:
+        self._node.get_logger().warning(f"smooth_path: {reason}")
+        return goal_end(SmoothPath, code, reason, **fields)
+
+    def _smoothed(self, goal: Any) -> GoalEnd:
         if goal.smoother_id not in SMOOTHERS:
             text = f"smoother_id {goal.smoother_id!r}: unknown; known: {SMOOTHERS[1]}"
-            return Result(error_code=Result.INVALID_SMOOTHER, error_msg=text)
+            return self._refused("INVALID_SMOOTHER", text)
         params, planner = self._context.params(), self._context.planner()
         poses = self._context.path(goal.path)
         if poses is None or len(poses) == 0:
             text = "the path is empty, not finite, or in an unknown frame"
-            return Result(error_code=Result.INVALID_PATH, error_msg=text)
+            return self._refused("INVALID_PATH", text)
         if planner is None:
             text = "no map has arrived yet"
-            return Result(error_code=Result.FAILED_TO_SMOOTH_PATH, error_msg=text)
+            return self._refused("FAILED_TO_SMOOTH_PATH", text)
         grid = planner.grid()
         if lengths(poses).sum() > _MOST_POSES * params.path_spacing_m:
             text = f"the path is longer than {_MOST_POSES} poses of path_spacing_m"
-            return Result(error_code=Result.INVALID_PATH, error_msg=text)
+            return self._refused("INVALID_PATH", text)
         poses = smooth_path(poses, grid, planner.body, params.path_spacing_m)
         stamp_ns = self._node.get_clock().now().nanoseconds
         path = path_message(poses, params.map_frame, stamp_ns)
@@ -63,6 +63,5 @@ class SmootherServer:
             check = check_path(poses, grid, planner.body, 0.0)
             if not check.fits:
                 text = f"the smoothed path is in collision at pose {check.first_bad}"
-                code = Result.SMOOTHED_PATH_IN_COLLISION
-                return Result(path=path, error_code=code, error_msg=text)
-        return Result(path=path, was_completed=True)
+                return self._refused("SMOOTHED_PATH_IN_COLLISION", text, path=path)
+        return goal_end(SmoothPath, path=path, was_completed=True)

@@ -18,6 +18,7 @@ from navette.msgs.geometry_msgs.msg import (
     PoseStamped,
     PoseWithCovarianceStamped,
 )
+from navette.msgs.known_fields import several_poses
 from navette.msgs.lifecycle_msgs.srv import GetState
 from navette.msgs.nav2_msgs.action import (
     AssistedTeleop,
@@ -183,7 +184,8 @@ class BasicNavigator(Node):
         self, poses: Sequence[PoseStamped], behavior_tree: str = ""
     ) -> bool:
         """Drive through poses to the last one."""
-        goal = NavigateThroughPoses.Goal(poses=list(poses), behavior_tree=behavior_tree)
+        goal = NavigateThroughPoses.Goal(behavior_tree=behavior_tree)
+        goal.poses = several_poses(NavigateThroughPoses.Goal, "poses", poses)
         self.info(f"Navigating with {len(poses)} goals....")
         what = f"Goal with {len(poses)} poses"
         return self._start(self.nav_through_poses_client, goal, what)
@@ -350,8 +352,9 @@ class BasicNavigator(Node):
     ) -> Path | None:
         """Return a path through goals; None if there is none."""
         request = ComputePathThroughPoses.Goal(
-            start=start, goals=list(goals), planner_id=planner_id, use_start=use_start
+            start=start, planner_id=planner_id, use_start=use_start
         )
+        request.goals = several_poses(ComputePathThroughPoses.Goal, "goals", goals)
         return self._path(self.compute_path_through_poses_client, request, "Get path")
 
     def smoothPath(
