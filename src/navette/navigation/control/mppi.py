@@ -4,7 +4,8 @@ Williams, Aldrich and Theodorou, "Model Predictive Path Integral Control: From T
 Parallel Computing" (2017), algorithm 2:
 
 1. shift the previous command sequence by the time that passed;
-2. add noise: K candidate sequences, a few of them fixed manoeuvres;
+2. add noise: K candidate sequences, a few of them fixed manoeuvres, and for drives that
+   steer or move sideways some that track the path;
 3. roll every candidate out with the robot's limits and sum its cost;
 4. average the candidates, weighted by exp(−cost / temperature);
 5. the first command of the average is the result.
@@ -30,6 +31,7 @@ from navette.navigation.control.drive_models import (
 from navette.navigation.control.limits import NO_CAP, SpeedCap, VelocityCommand
 from navette.navigation.control.moving_obstacles import add_moving_costs
 from navette.navigation.control.params import ControlParams
+from navette.navigation.control.path_candidates import SHARES, fill_path_candidates
 from navette.navigation.control.records import Rollouts
 from navette.navigation.control.rollouts import (
     CostWeights,
@@ -44,6 +46,7 @@ from navette.navigation.grids import NO_DISCS
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]
 
+_SHARES = np.array(SHARES, np.float32)
 _STANDSTILL_MPS = 0.05
 # Sets of noise that are used in turns.
 _NOISE_SETS = 8
@@ -107,7 +110,9 @@ class Mppi:
         if swerves:
             self._fixed = np.concatenate([self._fixed, self._swerves(steps)], axis=2)
         self._commands = np.zeros((steps, len(self._most)), np.float32)
-        count = samples + self._fixed.shape[2]
+        # Turns in place get a drive out of most tight places; others track the path.
+        self._tracked = 0 if self._drive == DIFFERENTIAL else len(SHARES)
+        count = samples + self._fixed.shape[2] + self._tracked
         self._candidates = np.empty((steps, len(self._most), count), np.float32)
         self._costs = np.empty(count, np.float32)
         self._turn = 0
@@ -146,13 +151,24 @@ class Mppi:
         step_s: Any = np.float32(self._step_s)
         motion = state.speed, state.side, state.turn_rate, self._curvature(state)
         fastest = max(abs(state.speed) + abs(state.side), sum(self._most[:-1]))
+        table = PathTable.of(path, state.x, state.y, float(self._step_s * fastest))
+        if self._tracked:
+            fill_path_candidates(
+                candidates[:, :, -self._tracked :],
+                float(state.yaw),
+                table,
+                self._limits,
+                self._drive,
+                _SHARES,
+                self._step_s,
+            )
         rollout_costs(
             candidates,
             np.array((state.yaw, *motion)),
             step_s,
             self._drive,
             self._limits,
-            PathTable.of(path, state.x, state.y, float(self._step_s * fastest)),
+            table,
             field._replace(x=field.x - state.x, y=field.y - state.y),
             self._body,
             self._weights,
@@ -228,7 +244,8 @@ class Mppi:
         self._turn = (self._turn + 1) % _NOISE_SETS
         samples = noise.shape[2]
         np.add(noise, self._commands[:, :, None], out=self._candidates[:, :, :samples])
-        self._candidates[:, :, samples:] = self._fixed
+        fixed = self._fixed.shape[2]
+        self._candidates[:, :, samples : samples + fixed] = self._fixed
         return self._candidates
 
     def _average(self, candidates: Array32) -> None:

@@ -10,7 +10,8 @@ from navette.geometry import DRIVES, Footprint, Pose2, advanced
 from navette.navigation.control.local_field import local_field
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.rollouts import PathWindow
+from navette.navigation.control.path_candidates import fill_path_candidates
+from navette.navigation.control.rollouts import PathTable, PathWindow
 from navette.navigation.grids import body_points
 
 DRIVE_PARAMS: dict[str, dict[str, Any]] = {
@@ -18,6 +19,7 @@ DRIVE_PARAMS: dict[str, dict[str, Any]] = {
     "ackermann": {"min_turning_radius_m": 0.8},
     "omni": {"max_side_speed_mps": 0.5},
 }
+AT_REST = MotionState(0.0, 0.0, 0.0, 0.0, 0.0)
 BODY = body_points(
     Footprint.from_flat((0.3, 0.2, -0.3, 0.2, -0.3, -0.2, 0.3, -0.2)), 0.1
 )
@@ -33,14 +35,19 @@ def window(points: np.ndarray, yaw: float = 0.0) -> PathWindow:
     )  # fmt: skip
 
 
-def make(drive: str, **values: Any) -> Mppi:
+def make(drive: str, body: np.ndarray = BODY, **values: Any) -> Mppi:
     params = ControlParams(drive=drive, method="mppi", **DRIVE_PARAMS[drive], **values)
-    return Mppi(params, BODY)
+    return Mppi(params, body)
 
 
-def drive_along(mppi: Mppi, path: PathWindow, field: Any, steps: int) -> list[Any]:
+def drive_along(
+    mppi: Mppi,
+    path: PathWindow,
+    field: Any,
+    steps: int,
+    state: MotionState = AT_REST,
+) -> list[Any]:
     """Drive without delay; return the states."""
-    state = MotionState(0.0, 0.0, 0.0, 0.0, 0.0)
     states = [state]
     for _ in range(steps):
         near = int(np.argmin(np.hypot(path.x - state.x, path.y - state.y)))
@@ -101,3 +108,52 @@ def test_a_post_beside_the_path_repels_every_corner_of_the_body() -> None:
     states = drive_along(make("differential"), path, field, 250)
     abeam = [s.y for s in states if 1.7 < s.x < 2.3]
     assert max(abeam) < -0.03
+
+
+@pytest.mark.parametrize("drive", ["ackermann", "omni"])
+def test_candidates_track_the_path(drive: str) -> None:
+    """At half the speed, a bend of 1.5 m and the end of the path are kept."""
+    angle = np.arange(0, 1.5, 0.05)
+    path = PathWindow(
+        1.5 * np.sin(angle), 1.5 - 1.5 * np.cos(angle), np.cos(angle), np.sin(angle),
+        1.5 * angle, np.ones(len(angle), np.int8),
+    )  # fmt: skip
+    limits = make(drive)._limits
+    table = PathTable.of(path, 0.0, 0.0, 0.1)
+    parts = 3 if drive == "omni" else 2
+    commands = np.zeros((100, parts, 1), np.float32)
+    shares = np.array([0.5], np.float32)
+    code = DRIVES.index(drive)
+    fill_path_candidates(commands, 0.0, table, limits, code, shares, 0.1)
+    pose, apart = Pose2(0.0, 0.0, 0.0), []
+    for step in commands[:, :, 0].astype(float):
+        turn = step[0] * step[1] if drive == "ackermann" else step[2]
+        side = step[1] if drive == "omni" else 0.0
+        pose = advanced(pose, step[0], turn, 0.1, side=side)
+        apart.append(abs(math.hypot(pose.x, pose.y - 1.5) - 1.5))
+    assert max(apart) < 0.05
+    assert math.dist((pose.x, pose.y), (path.x[-1], path.y[-1])) < 0.1
+
+
+@pytest.mark.parametrize(("y", "yaw"), [(0.04, 0.0), (0.04, 0.19), (0.05, -0.19)])
+def test_a_robot_before_a_passage_with_six_centimetres_on_each_side_enters(
+    y: float, yaw: float
+) -> None:
+    """Nearly all noise collides there, and the mean of the rest stands."""
+    along, beside = np.arange(0.4, 2.4, 0.02), np.arange(0.26, 1.5, 0.02)
+    walls = [np.column_stack([along, along * 0 + sign * 0.26]) for sign in (1, -1)]
+    walls += [np.column_stack([beside * 0 + 0.4, sign * beside]) for sign in (1, -1)]
+    field = local_field(np.concatenate(walls), 0.05, 1.25)
+    path = window(np.column_stack([np.arange(0, 4, 0.1), np.zeros(40)]))
+    platform = Footprint.from_flat((-0.25, -0.2, 0.25, -0.2, 0.25, 0.2, -0.25, 0.2))
+    mppi = make(
+        "omni",
+        body_points(platform, 0.15),
+        cruise_speed_mps=0.9,
+        max_speed_mps=1.0,
+        mppi_clearance_m=0.15,
+        mppi_heading_weight=2.0,
+        mppi_reverse_weight=0.0,
+    )
+    states = drive_along(mppi, path, field, 160, MotionState(0.0, y, yaw, 0.0, 0.0))
+    assert states[-1].x > 3.0
