@@ -16,6 +16,8 @@ Points = NDArray[np.float64]
 
 _FORMATS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
 _MOST_POINTS = 4_000_000
+_LARGEST_RAD = 100.0
+_FARTHEST_M = 1e4  # no sensor of a robot measures farther
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,19 +59,18 @@ _HERE = np.zeros(3)
 
 def of_scan(msg: LaserScan, *, inf_is_valid: bool) -> Observation:
     """Return the observation of a planar scan, in the sensor's frame."""
-    ranges = np.asarray(msg.ranges, np.float64)
-    if not 0.0 <= msg.range_min < msg.range_max < math.inf:
+    with np.errstate(invalid="ignore"):  # a signalling NaN
+        ranges = np.asarray(msg.ranges).astype(np.float64)
+    _check_limits("range_min", msg.range_min, "range_max", msg.range_max)
+    first, step = msg.angle_min, msg.angle_increment
+    span = abs(step) * len(ranges)
+    if not (abs(first) <= _LARGEST_RAD and span <= _LARGEST_RAD):
         raise InvalidInputError(
             "out_of_range",
-            f"range_min {msg.range_min}, range_max {msg.range_max}; expected 0 <= min "
-            "< max",
+            f"angle_min {first}, angle_increment {step}, {len(ranges)} beams; expected "
+            f"angles within ±{_LARGEST_RAD:g} rad",
         )
-    angles = msg.angle_min + msg.angle_increment * np.arange(len(ranges))
-    if not np.isfinite(angles).all():
-        raise InvalidInputError(
-            "not_finite",
-            f"angle_min {msg.angle_min}, angle_increment {msg.angle_increment}",
-        )
+    angles = first + step * np.arange(len(ranges))
     directions = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
     hit = (ranges > msg.range_min) & (ranges < msg.range_max)
     miss = np.isposinf(ranges) if inf_is_valid else np.zeros(len(ranges), np.bool_)
@@ -129,9 +130,10 @@ def cloud_points(msg: PointCloud2) -> Points:
                 f"field {name} at {field.offset} in points of {step} bytes",
             )
         part = np.ascontiguousarray(data[:, field.offset : end])
-        points[:, column] = part.view(kind)[:, 0]
-    finite: Points = points[np.isfinite(points).all(axis=1)]
-    return finite
+        with np.errstate(invalid="ignore"):  # a signalling NaN
+            points[:, column] = part.view(kind)[:, 0]
+    near: Points = points[(np.abs(points) <= _FARTHEST_M).all(axis=1)]
+    return near
 
 
 def of_range(msg: Range) -> Cone | None:
@@ -143,12 +145,7 @@ def of_range(msg: Range) -> Cone | None:
     Raises:
         InvalidInputError: its limits are not usable.
     """
-    if not (0.0 <= msg.min_range < msg.max_range < math.inf):
-        raise InvalidInputError(
-            "out_of_range",
-            f"min_range {msg.min_range}, max_range {msg.max_range}; expected 0 <= min "
-            "< max",
-        )
+    _check_limits("min_range", msg.min_range, "max_range", msg.max_range)
     if not 0.0 < msg.field_of_view <= math.pi:
         raise InvalidInputError(
             "out_of_range", f"field_of_view {msg.field_of_view}; expected 0 to pi"
@@ -159,3 +156,17 @@ def of_range(msg: Range) -> Cone | None:
     if msg.range >= msg.max_range:
         return Cone(msg.max_range, half, is_free=True)
     return Cone(max(msg.range, msg.min_range), half, is_free=False)
+
+
+def _check_limits(low_name: str, low: float, high_name: str, high: float) -> None:
+    """Check the limits of a sensor's range.
+
+    Raises:
+        InvalidInputError: they are not usable.
+    """
+    if not 0.0 <= low < high <= _FARTHEST_M:
+        raise InvalidInputError(
+            "out_of_range",
+            f"{low_name} {low}, {high_name} {high}; expected 0 <= min < max <= "
+            f"{_FARTHEST_M:g} m",
+        )

@@ -153,6 +153,36 @@ def test_beams_of_a_scan() -> None:
         of_scan(msg, inf_is_valid=True)
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"angle_min": math.nan},
+        {"angle_increment": math.nan},
+        {"angle_increment": 1e300},
+        {"range_max": 1e300},
+        {"range_max": math.inf},
+        {"range_min": -1.0},
+    ],
+)
+def test_scans_without_usable_geometry_are_refused(changes: dict[str, float]) -> None:
+    values = {
+        "angle_min": 0.0,
+        "angle_increment": 0.1,
+        "range_min": 0.1,
+        "range_max": 5.0,
+    }
+    msg = LaserScan(**{**values, **changes}, ranges=np.ones(3, np.float32))
+    with pytest.raises(InvalidInputError) as caught:
+        of_scan(msg, inf_is_valid=True)
+    assert caught.value.reason == "out_of_range"
+
+
+def test_a_signalling_nan_is_no_echo() -> None:
+    ranges = np.array([0x7F800001, 0x3F800000], np.uint32).view(np.float32)
+    msg = LaserScan(angle_increment=0.1, range_max=5.0, ranges=ranges)
+    assert len(of_scan(msg, inf_is_valid=True).hits) == 1
+
+
 def cloud(kind: str, *, is_bigendian: bool = False) -> PointCloud2:
     """Points (1, 2, 3) and NaN with other fields between."""
     order = ">" if is_bigendian else "<"
