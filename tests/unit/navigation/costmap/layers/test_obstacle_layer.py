@@ -158,8 +158,8 @@ def test_beams_of_a_scan() -> None:
     [
         {"angle_min": math.nan},
         {"angle_increment": math.nan},
-        {"angle_increment": 1e300},
-        {"range_max": 1e300},
+        {"angle_increment": 1e30},
+        {"range_max": 1e30},
         {"range_max": math.inf},
         {"range_min": -1.0},
     ],
