@@ -27,9 +27,22 @@ SearchPath = Annotated[
     list[Path] | None,
     Option("--path", metavar="FOLDER", help="Search this folder for modules first."),
 ]
+Strict = Annotated[
+    bool,
+    Option(
+        "--strict",
+        help="Refuse what ROS 2 refuses: integers for float parameters, long names,"
+        " waits that never end there.",
+    ),
+]
 
 
-def run(words: Words, on_navette: OnNavette = False, path: SearchPath = None) -> None:
+def run(
+    words: Words,
+    on_navette: OnNavette = False,
+    path: SearchPath = None,
+    strict: Strict = False,
+) -> None:
     """Run unmodified ROS 2 programs without ROS 2.
 
     The imports rclpy, std_msgs.msg, tf2_ros, … resolve to Navette's modules. If ROS 2
@@ -39,8 +52,11 @@ def run(words: Words, on_navette: OnNavette = False, path: SearchPath = None) ->
     from navette.ros2.names.process import run_alone, run_together
     from navette.ros2.names.targets import read_programs
     from navette.ros2.workspace import activate
+    from navette.runtime import strict_mode
 
     sys.path[:0] = map(str, path or ())
+    if strict:
+        strict_mode.enable()
     real = installed_rclpy()
     if real is None or on_navette:
         install(instead_of_ros=on_navette)

@@ -6,6 +6,7 @@ from typing import Any
 
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.callback_threads import group_of_this_thread
 from navette.runtime.events import Entity
 from navette.runtime.exceptions import (
     InvalidHandle,
@@ -18,6 +19,7 @@ from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
+from navette.runtime.strict_mode import check_wait
 from navette.runtime.type_support import check_type
 from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
 
@@ -115,6 +117,13 @@ class Client(ServiceEndpoint):
             ROSInterruptException: the context was shut down or the client destroyed.
             ServiceFailedError: the server's callback raised.
         """
+        waiting = group_of_this_thread()
+        check_wait(
+            f"call() of {self.srv_name}",
+            in_driver_thread=self._loop.in_driver_thread,
+            same_group=waiting is self.group,
+            exclusive=self.group.exclusive,
+        )
         future = self.call_async(request)
         self._loop.run(
             until_ns=self._loop.deadline_ns(timeout_sec), done=future.done, calling=True

@@ -25,6 +25,7 @@ from navette.runtime.exceptions import (
 from navette.runtime.future import Future, Task
 from navette.runtime.loop import EventLoop
 from navette.runtime.node import Node
+from navette.runtime.strict_mode import check_wait
 
 
 async def await_or_execute(
@@ -247,6 +248,8 @@ class Executor:
     ) -> None:
         if self._depth == 0:  # a nested spin must not clear the outer spin's stop
             self._stopping = False
+        elif self.loop.in_driver_thread:
+            check_wait("spin", in_driver_thread=True, same_group=False, exclusive=False)
         self._depth += 1
         try:
             self.loop.run(

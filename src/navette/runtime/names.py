@@ -15,6 +15,7 @@ from navette.runtime.exceptions import (
     InvalidTopicNameException,
     NameValidationException,
 )
+from navette.runtime.strict_mode import is_strict
 
 TOPIC_SEPARATOR_STRING = "/"
 HIDDEN_TOPIC_PREFIX = "_"
@@ -23,6 +24,7 @@ _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_/~{}]")
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 _MAX_NODE_NAME = 255
+_MAX_FULL_NAME = 247
 _REMAPPING = re.compile(r"(?:([^:/]+):(?!//))?(?:ros(topic|service)://)?([^:]+)")
 
 
@@ -61,6 +63,9 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     if not name.startswith("/"):
         raise kind(name, "a full name must start with '/'", 0)
     _check_tokens(name, kind)
+    if len(name) > _MAX_FULL_NAME and is_strict():
+        reason = f"must not be longer than {_MAX_FULL_NAME} characters on ROS 2"
+        raise kind(name, reason, _MAX_FULL_NAME)
     return True
 
 

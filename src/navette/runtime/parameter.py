@@ -13,6 +13,7 @@ from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.msgs.rcl_interfaces.msg import ParameterValue
 from navette.runtime.exceptions import InvalidParameterException
 from navette.runtime.parameter_files import parse_value, read_parameter_file
+from navette.runtime.strict_mode import is_strict
 
 T = TypeVar("T")
 
@@ -256,9 +257,10 @@ def coerced(name: str, value: Any, wanted: ParameterType) -> Any:
     Raises:
         ParameterError: names the parameter, the value and the expected type.
     """
-    if wanted is ParameterType.DOUBLE and ParameterType.INTEGER.check(value):
+    widens = not is_strict()
+    if widens and wanted is ParameterType.DOUBLE and ParameterType.INTEGER.check(value):
         return float(value)
-    if wanted is ParameterType.DOUBLE_ARRAY and _is_numeric_array(value):
+    if widens and wanted is ParameterType.DOUBLE_ARRAY and _is_numeric_array(value):
         return [float(v) for v in value]
     if wanted in _ITEMS and _is_array(value) and len(value) == 0:
         return []

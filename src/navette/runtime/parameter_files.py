@@ -17,6 +17,7 @@ from navette.files.untrusted.yaml_input import (
     load_yaml,
     problem_of,
 )
+from navette.runtime.strict_mode import is_strict
 
 NodeParameters = list[tuple[str, dict[str, Any]]]
 """(node pattern such as ``/ns/node`` or ``/**``, flat name → value), in file order."""
@@ -202,7 +203,7 @@ def _leaf(name: str, value: Any, origin: str) -> Any:
         return value
     if isinstance(value, list):
         kinds = {type(item) for item in value}
-        if kinds == {int, float}:
+        if kinds == {int, float} and not is_strict():
             return [float(item) for item in value]
         if len(kinds) <= 1 and kinds <= {bool, int, float, str}:
             return value

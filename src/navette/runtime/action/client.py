@@ -12,6 +12,7 @@ from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.runtime.action.goal_states import STATUS_NAMES, is_active
 from navette.runtime.action.result_request import ResultRequest
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.callback_threads import group_of_this_thread
 from navette.runtime.exceptions import ROSInterruptException
 from navette.runtime.future import Future, ResponseFuture
 from navette.runtime.node import Node
@@ -20,6 +21,7 @@ from navette.runtime.qos import (
     qos_profile_action_status_default,
     qos_profile_services_default,
 )
+from navette.runtime.strict_mode import check_wait
 from navette.runtime.time import seconds_to_ns
 from navette.runtime.type_support import check_type, interface_name
 from navette.runtime.waitable import Waitable
@@ -218,6 +220,13 @@ class ActionClient(Waitable[Any]):
             ROSInterruptException: the context was shut down or the client destroyed.
             TimeoutError: no event is left that could complete it (virtual clock).
         """
+        waiting = group_of_this_thread()
+        check_wait(
+            f"a wait for action {self.action_name}",
+            in_driver_thread=self._loop.in_driver_thread,
+            same_group=waiting is self._cancel_client.group,
+            exclusive=self._cancel_client.group.exclusive,
+        )
         self._loop.run(done=future.done, calling=True)
         if future.cancelled():
             raise ROSInterruptException
