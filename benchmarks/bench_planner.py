@@ -24,9 +24,12 @@ from scipy.sparse.csgraph import dijkstra as scipy_dijkstra
 from skimage.graph import MCP_Geometric
 
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import CellWindow, GridSpec
 from navette.navigation.planning import Goal, Planner, PlannerParams, dijkstra
 from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.navigator import Navigator
+from navette.navigation.planning.received_map import MapPart, ReceivedMap
+from navette.navigation.planning.reports import RobotMotion
 from navette.navigation.planning.string_pulling import centers, pull
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -188,6 +191,49 @@ def add_whole_plans(bench: Benchmark) -> None:
     bench.case("plan out of a corner", {"navette": lambda: planner.plan(*tight)})
 
 
+def add_map_updates(bench: Benchmark, size: int, target_ms: float) -> None:
+    """A part of 354² cells around a driving robot changes; its path is looked after."""
+    rng = np.random.default_rng(1)
+    spec = GridSpec(0.05, size, size, Pose2(0.0, 0.0, 0.0))
+    cells = np.zeros(spec.shape, np.int8)
+    for row, column in rng.integers(50, size - 50, (size // 8, 2)).tolist():
+        cells[row : row + 20, column : column + 20] = 100
+    received, navigator = ReceivedMap(cells, spec), Navigator(PlannerParams())
+    navigator.set_map(cells, spec)
+    navigator.set_goal(Goal(*(size * spec.resolution - 1.0,) * 2), 0)
+    clock = itertools.count(0, 1_000_000)  # a robot at rest would be stuck
+
+    def step(pose: Pose2) -> None:
+        robot = RobotMotion(pose, 0.5, 0.0)
+        navigator.step(robot, next(clock), stale=False)
+
+    step(Pose2(1.0, 1.0, 0.7))
+    path = navigator.take_path()
+    assert path is not None
+    for pose in path[:60]:  # once it has set out, it keeps its path
+        step(Pose2(*pose))
+    here = Pose2(*path[59])
+    window = CellWindow.around(spec, np.array([(here.x, here.y)]), 177)
+
+    before = cells[window.slices].copy()
+
+    def change() -> None:
+        part = before.copy()  # a box of 0.4 m, each time elsewhere
+        row, column = rng.integers(0, np.array(part.shape) - 8).tolist()
+        part[row : row + 8, column : column + 8] = 100
+        changed = received.update(MapPart(part, window))
+        navigator.set_map(received.cells, spec, changed=changed)
+        step(here)
+
+    bench.case(
+        f"map update, {size}²",
+        {"navette": change},
+        "a box moves; where it blocks the path, that is planned again",
+        target_ms=target_ms,
+        least_rounds=50,
+    )
+
+
 def check_movingai(folder: Path) -> None:
     """Print, map by map, how many scenario lengths are exact."""
     exact = total = 0
@@ -233,6 +279,8 @@ def main() -> None:
         add_searches(bench, f"cost field {size}²", field, 3.0, target_ms)
     add_string_pulling(bench, obstacle_map(1024))
     add_whole_plans(bench)
+    for size, target_ms in ((1024, 1.0), (4096, 3.0)):
+        add_map_updates(bench, size, target_ms)
     bench.main(rest)
 
 

@@ -3,12 +3,15 @@
     python -m navette.navigation.stack.kernel_part PART
 
 The machine code is stored; the program that starts this process then loads it. PART is
-``planning``, ``locating`` for SLAM, or ``driving`` for all the rest and a short drive.
+``planning``, ``locating`` for SLAM and exploration, or ``driving`` for all the rest and
+a short drive.
 """
 
 import os
 import sys
 from collections.abc import Callable
+
+import numpy as np
 
 from navette.navigation.stack.options import RunOptions
 
@@ -45,12 +48,27 @@ def compile_driving() -> None:
 
 
 def compile_locating() -> None:
-    """Compile the kernels of SLAM, behind the other parts."""
+    """Compile the kernels of SLAM and of exploration, behind the other parts."""
     if hasattr(os, "nice"):
         os.nice(19)
     from navette.navigation.slam.warm_up import warm_up
 
     warm_up()
+    _explore()
+
+
+def _explore() -> None:
+    """Find the frontiers of a room with one side open."""
+    from navette.geometry import Pose2
+    from navette.navigation.grids import FREE, LETHAL, UNKNOWN, GridSpec
+    from navette.navigation.missions.explore.frontiers import FrontierParams, explore
+
+    spec = GridSpec(0.1, 80, 80, Pose2(0.0, 0.0, 0.0))
+    cells = np.full(spec.shape, UNKNOWN, np.int8)
+    cells[9:61, 9:60] = LETHAL
+    cells[10:60, 10:60] = FREE
+    if not explore(cells, spec, (3.0, 3.0), FrontierParams()).frontiers:
+        raise RuntimeError("no frontier: kernels of exploration were not called")
 
 
 def _make(name: str) -> None:
