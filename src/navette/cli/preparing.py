@@ -81,7 +81,7 @@ def prepare(
 def _compile(progress: Preparation, show: Callable[[str], None]) -> bool:
     """Compile in two processes; return whether both succeeded."""
     with contextlib.ExitStack() as ends:
-        later = _started(_LATER)
+        later = _started(_LATER, "later")
         unless_done = ends.enter_context(contextlib.ExitStack())
         unless_done.callback(_end, later)
         processes = []
@@ -98,9 +98,9 @@ def _compile(progress: Preparation, show: Callable[[str], None]) -> bool:
         return all(process.returncode == 0 for process in processes)
 
 
-def _started(part: str) -> "subprocess.Popen[bytes]":
+def _started(*part: str) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(
-        [sys.executable, "-m", "navette.navigation.stack.kernel_part", part],
+        [sys.executable, "-m", "navette.navigation.stack.kernel_part", *part],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

@@ -20,15 +20,16 @@ from navette.files.kernel_archive import (
 from navette.files.kernels import read_kernel
 from navette.navigation.stack.kernel_part import PARTS
 
+_MOST_S = 900.0  # a minute on an idle machine
 _PART_MODULE = "navette.navigation.stack.kernel_part"
 
 
 def build_archive(path: Path) -> int:
-    """Compile the kernels in two processes; return their number.
+    """Compile the kernels, each part in a process; return their number.
 
     Raises:
         OSError: this host does not run the machine code of its generic processor.
-        subprocess.CalledProcessError: the kernels did not compile.
+        subprocess.SubprocessError: the kernels did not compile, or took too long.
     """
     processor = generic_processor()
     if processor is None:
@@ -43,8 +44,13 @@ def build_archive(path: Path) -> int:
         }
         commands = [[sys.executable, "-m", _PART_MODULE, part] for part in PARTS]
         processes = [subprocess.Popen(each, env=environment) for each in commands]
-        for process in processes:
-            process.wait()
+        try:
+            for process in processes:
+                process.wait(_MOST_S)
+        finally:
+            for process in processes:
+                process.kill()  # without effect if it has ended
+                process.wait()
         for command, process in zip(commands, processes, strict=True):
             if process.returncode != 0:
                 raise subprocess.CalledProcessError(process.returncode, command)

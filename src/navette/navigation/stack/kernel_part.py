@@ -1,10 +1,10 @@
 """Compile a part of the kernels that a drive needs, in a process of its own.
 
-    python -m navette.navigation.stack.kernel_part PART
+    python -m navette.navigation.stack.kernel_part PART [later]
 
 The machine code is stored; the program that starts this process then loads it. PART is
 ``planning``, ``locating`` for SLAM and exploration, or ``driving`` for all the rest and
-a short drive.
+a short drive. ``later`` leaves the processor to other processes.
 """
 
 import os
@@ -16,6 +16,7 @@ import numpy as np
 from navette.navigation.stack.options import RunOptions
 
 PARTS = ("planning", "driving", "locating")
+LATER = "later"
 # Simulated time after which the robot moves and every node has been called.
 _DRIVE_S = 3.0
 
@@ -48,9 +49,7 @@ def compile_driving() -> None:
 
 
 def compile_locating() -> None:
-    """Compile the kernels of SLAM and of exploration, behind the other parts."""
-    if hasattr(os, "nice"):
-        os.nice(19)
+    """Compile the kernels of SLAM and of exploration."""
     from navette.navigation.slam.warm_up import warm_up
 
     warm_up()
@@ -90,4 +89,6 @@ _COMPILE: dict[str, Callable[[], None]] = dict(
 )
 
 if __name__ == "__main__":
+    if sys.argv[2:] == [LATER] and hasattr(os, "nice"):
+        os.nice(19)
     _COMPILE[sys.argv[1]]()
