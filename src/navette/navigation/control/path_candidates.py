@@ -1,7 +1,7 @@
 """Candidate command sequences that follow the path.
 
-In a passage with centimetres on each side nearly all noise collides, and the mean of
-the rest stands still. A sequence that tracks the path, slowly if need be, is always
+Before a passage with centimetres on each side nearly all noise collides, and the mean
+of the rest is at rest. A sequence that tracks the path, slowly if need be, is always
 among the candidates.
 """
 
