@@ -21,12 +21,14 @@ LOW, HIGH = 1.77, 4.55
 PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
 
 
-def final_error(seed: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def final_error(
+    localization: str, seed: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Drive bends and turns; return error and covariance of x, y, yaw at the end."""
     context = Context(clock=VirtualClock())
     with context:
         noise = {
-            "localization": "odometry+imu",
+            "localization": localization,
             "wheel_noise_m": 0.01,
             "imu_turn_rate_noise_radps": 0.02,
             "seed": seed,
@@ -60,9 +62,10 @@ def final_error(seed: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 @pytest.mark.long
-def test_errors_are_as_large_as_the_filter_states() -> None:
+@pytest.mark.parametrize("localization", ["odometry+imu", "odometry+imu+gnss"])
+def test_errors_are_as_large_as_the_filter_states(localization: str) -> None:
     normalised = []
     for seed in range(RUNS):
-        error, covariance = final_error(seed)
+        error, covariance = final_error(localization, seed)
         normalised.append(float(error @ np.linalg.solve(covariance, error)))
     assert LOW < np.mean(normalised) < HIGH

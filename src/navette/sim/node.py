@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from navette.errors import InvalidInputError
+from navette.errors import InvalidInputError, ParameterError
 from navette.geometry import Pose2, Transform3
 from navette.geometry.messages import time_message, transform_message
 from navette.msgs import topics
@@ -32,7 +32,7 @@ from navette.sim.run_control import RunControl
 from navette.sim.scene import Scene
 from navette.sim.sensor_messages import hazards_message
 from navette.sim.sensor_outputs import output_of
-from navette.sim.sensor_specs import ContactSensor, Sensor
+from navette.sim.sensor_specs import ContactSensor, GnssSensor, Sensor
 from navette.sim.sensor_topics import SensorTopic, sensors_of, topics_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
@@ -135,6 +135,14 @@ class SimNode(StageNode):
             self.get_logger().warning(
                 "the robot has no laser scanner: without /lidar there is no costmap "
                 "and navigation does not drive the robot"
+            )
+        if (
+            "gnss" in self.params.fused_sensors
+            and not self.simulator.devices[GnssSensor]
+        ):
+            raise ParameterError(
+                f"parameter 'localization': {self.params.localization!r}; the robot "
+                "has no GNSS receiver (a sensor of type navsat)"
             )
         self._origin_ns = self.get_clock().now_ns
         self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
@@ -303,7 +311,9 @@ class SimNode(StageNode):
         if output.needs_reading:
             reading = self._reading(type(sensor), topic.index, stamp_ns)
         frame = self.frames.of_sensor(topic.link, sensor)
-        self.publish(topic.name, output.message(reading, sensor, stamp_ns, frame))
+        # With the noise of the parameters, which the message states.
+        used = self.simulator.devices[type(sensor)][topic.index].sensor
+        self.publish(topic.name, output.message(reading, used, stamp_ns, frame))
 
     def _reading(self, kind: type[Sensor], index: int, stamp_ns: int) -> Any:
         """Measure, at most once at a time."""

@@ -9,7 +9,7 @@ from navette.params import Params, param
 CONTROL_PERIOD_S = 0.01  # cycle of the motor controller
 
 LOCALIZATIONS = (
-    *("truth", "odometry", "odometry+imu"),
+    *("truth", "odometry", "odometry+imu", "odometry+gnss", "odometry+imu+gnss"),
     *("slam", "slam+imu", "slam+wheels", "amcl", "amcl+imu", "amcl+wheels"),
 )
 """Sources of the pose, with the sensors that the filter fuses with the wheels."""
@@ -137,7 +137,7 @@ class SimParams(Params):
 
     @property
     def fused_sensors(self) -> frozenset[str]:
-        """Sensors that the filter fuses with the wheels: "imu"."""
+        """Sensors that the filter fuses with the wheels: "imu", "gnss"."""
         named = frozenset(self.localization.split("+")[1:])
         if self.is_corrected and not named:
             named = frozenset({"imu"})

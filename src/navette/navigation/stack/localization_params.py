@@ -6,9 +6,11 @@ base`` (a filter, if it filters the odometry) and, without correction, ``map →
 
 from typing import Any
 
+from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.sim.params import SimParams
+from navette.sim.scene import GeoOrigin
 
 # Variances per second. Of the pose: slip of the wheels, which no sensor measures; its
 # other errors are those of the velocities.
@@ -17,15 +19,22 @@ _PROCESS_NOISE = (
     *(2.0, 0.01, 0.0, 0.0, 0.0, 4.0),
     *(1.0, 1.0, 0.0),
 )
+_ORIGIN = GeoOrigin()
 _ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
 
 
-def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str, Any]]:
+def localization_parameters(
+    sim: SimParams, start: Pose2, origin: GeoOrigin = _ORIGIN
+) -> dict[str, dict[str, Any]]:
     """Return node → parameters: the frames of the run and the start pose.
 
     Args:
         sim: parameters of the simulated robot.
         start: map_T_base at the start.
+        origin: of the world on the Earth, for GNSS.
+
+    Raises:
+        InvalidValueError: GNSS in a world whose x axis does not point east.
     """
     x, y, yaw = start
     values: dict[str, dict[str, Any]] = {
@@ -37,7 +46,7 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
             "frequency_hz": sim.odometry_rate_hz,
             "odom0": topics.WHEEL_ODOMETRY.name,
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
-            **_fused(sim),
+            **_fused(sim, origin),
             "process_noise_covariance": list(_PROCESS_NOISE),
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
         },
@@ -63,10 +72,19 @@ def localization_parameters(sim: SimParams, start: Pose2) -> dict[str, dict[str,
     return values
 
 
-def _fused(sim: SimParams) -> dict[str, Any]:
+def _fused(sim: SimParams, origin: GeoOrigin) -> dict[str, Any]:
     """Return the filter's parameters of the sensors beside the wheels."""
     values: dict[str, Any] = {}
     if "imu" in sim.fused_sensors:
         values["imu0"] = topics.IMU.name
         values["imu0_config"] = [name in ("roll", "pitch", "vyaw") for name in _ORDER]
+    if "gnss" in sim.fused_sensors:
+        if origin.heading_deg:
+            raise InvalidValueError(
+                f"localization {sim.localization!r}: the world's x axis points "
+                f"{origin.heading_deg:g} degrees from east; the filter needs 0 "
+                "(<heading_deg> of its <spherical_coordinates>)"
+            )
+        values["gps0"] = topics.FIX.name
+        values["gps0_datum_deg"] = [origin.latitude_deg, origin.longitude_deg]
     return values

@@ -185,7 +185,7 @@ class Simulation:
         """Add the parameters of the localization nodes, below all others."""
         start = self.sim.simulator.pose().to_pose2()
         params = self.sim.params
-        found = localization_parameters(params, start)
+        found = localization_parameters(params, start, self.resolved.scene.origin)
         for name, _ in localization_nodes(params):
             if name in found:
                 origin = f"localization {params.localization}"

@@ -346,7 +346,7 @@ def _run_localization(
     x, y, yaw_deg = given_start or (0.0, 0.0, 0.0)
     start = Pose2(x, y, math.radians(yaw_deg))
     sim = SimParams(localization=localization, **frames)
-    own = localization_parameters(sim, start)[name]
+    own = localization_parameters(sim, start, resolved.scene.origin)[name]
     if given_start is None:
         own = {key: v for key, v in own.items() if "initial_pose" not in key}
     profile = ParameterOverrides()

@@ -71,3 +71,15 @@ def test_zones_have_the_frames_of_the_robot(tmp_path: Path) -> None:
         assert zones.get_parameter("map_frame").value == "sim_world"
     finally:
         run.close()
+
+
+def test_gnss_is_fused_if_the_robot_has_a_receiver() -> None:
+    with pytest.raises(ParameterError, match="has no GNSS receiver"):
+        simulation("odometry+gnss")
+    run = simulation("odometry+imu+gnss", robot="jackal")
+    try:
+        ekf = run.stack.localization[0]
+        assert ekf.get_parameter("gps0").value == "/fix"
+        assert list(ekf.get_parameter("gps0_datum_deg").value) == [0.0, 0.0]
+    finally:
+        run.close()

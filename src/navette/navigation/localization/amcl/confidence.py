@@ -42,6 +42,10 @@ class ConfidenceMonitor:
         """Whether the last scan fits: a search would disturb what scans may confirm."""
         return self._good > 0
 
+    def doubt(self) -> None:
+        """Return to localizing: several places explain what was seen."""
+        self.state, self._good = LocalizationState.LOCALIZING, 0
+
     def update(
         self, match: float, stddev_m: float, share: float, now_ns: int
     ) -> LocalizationState:

@@ -93,7 +93,7 @@ class LikelihoodField:
         found = np.zeros(len(poses))
         if len(points):
             _scores(
-                self.log_likelihood, self.outside, *_frame(self.spec),
+                self.log_likelihood, self.outside, _frame(self.spec),
                 np.ascontiguousarray(poses), np.ascontiguousarray(points), found,
             )  # fmt: skip
         return found
@@ -106,7 +106,7 @@ class LikelihoodField:
             return 0.0
         return float(
             _share_within(
-                self.distance, *_frame(self.spec), np.asarray(pose, np.float64),
+                self.distance, _frame(self.spec), np.asarray(pose, np.float64),
                 np.ascontiguousarray(points), within_m,
             )
         )  # fmt: skip
@@ -120,7 +120,7 @@ class LikelihoodField:
         """
         found, scores = np.array(poses, np.float64), np.zeros(len(poses))
         _refine(
-            self.log_likelihood, self.outside, *_frame(self.spec), found,
+            self.log_likelihood, self.outside, _frame(self.spec), found,
             np.ascontiguousarray(points), scores, step_m, step_rad,
         )  # fmt: skip
         return found, scores
@@ -138,32 +138,63 @@ def _frame(spec: GridSpec) -> tuple[float, float, float, float]:
 
 
 @kernel
+def _view_from(
+    frame: tuple[float, float, float, float], x: float, y: float, yaw: float
+) -> tuple[float, float, float, float]:
+    """Return the transform of points seen from a pose into the grid, in cells.
+
+    Column and row of the pose, then cosine and sine of its heading over the resolution.
+
+    Args:
+        frame: x, y, yaw of the grid's corner, m, rad, and its resolution, m.
+        x: of the pose, m; likewise y, m, and yaw, rad.
+    """
+    x0, y0, yaw0, resolution = frame
+    dx, dy = x - x0, y - y0
+    c0, s0 = math.cos(yaw0), math.sin(yaw0)
+    return (
+        (c0 * dx + s0 * dy) / resolution,
+        (c0 * dy - s0 * dx) / resolution,
+        math.cos(yaw - yaw0) / resolution,
+        math.sin(yaw - yaw0) / resolution,
+    )
+
+
+@kernel
+def _cell_at(
+    view: tuple[float, float, float, float],
+    px: float,
+    py: float,
+    height: int,
+    width: int,
+) -> tuple[int, int]:
+    """Return row and column of the cell in which a point of a view lies; −1 outside.
+
+    The grid itself is not passed: Numba would count its references at each point.
+    """
+    u = view[0] + view[2] * px - view[3] * py
+    v = view[1] + view[3] * px + view[2] * py
+    if 0.0 <= u < width and 0.0 <= v < height:
+        return int(v), int(u)
+    return -1, -1
+
+
+@kernel
 def _score(
     field: Any,
     outside: float,
-    x0: float,
-    y0: float,
-    yaw0: float,
-    resolution: float,
+    frame: tuple[float, float, float, float],
     x: float,
     y: float,
     yaw: float,
     points: Any,
 ) -> float:
     """Return the mean of the field at the points, seen from a pose."""
-    dx, dy = x - x0, y - y0
-    c0, s0 = math.cos(yaw0), math.sin(yaw0)
-    u0, v0 = (c0 * dx + s0 * dy) / resolution, (c0 * dy - s0 * dx) / resolution
-    c, s = math.cos(yaw - yaw0) / resolution, math.sin(yaw - yaw0) / resolution
-    total = 0.0
+    view, total = _view_from(frame, x, y, yaw), 0.0
     height, width = field.shape
     for k in range(points.shape[0]):
-        px, py = points[k, 0], points[k, 1]
-        u, v = u0 + c * px - s * py, v0 + s * px + c * py
-        if 0.0 <= u < width and 0.0 <= v < height:
-            total += field[int(v), int(u)]
-        else:
-            total += outside
+        row, column = _cell_at(view, points[k, 0], points[k, 1], height, width)
+        total += outside if row < 0 else field[row, column]
     return float(total / points.shape[0])
 
 
@@ -171,42 +202,30 @@ def _score(
 def _scores(
     field: Any,
     outside: float,
-    x0: float,
-    y0: float,
-    yaw0: float,
-    resolution: float,
+    frame: tuple[float, float, float, float],
     poses: Any,
     points: Any,
     scores: Any,
 ) -> None:
     for i in range(poses.shape[0]):
         scores[i] = _score(
-            field, outside, x0, y0, yaw0, resolution,
-            poses[i, 0], poses[i, 1], poses[i, 2], points,
-        )  # fmt: skip
+            field, outside, frame, poses[i, 0], poses[i, 1], poses[i, 2], points
+        )
 
 
 @kernel
 def _share_within(
     distance: Any,
-    x0: float,
-    y0: float,
-    yaw0: float,
-    resolution: float,
+    frame: tuple[float, float, float, float],
     pose: Any,
     points: Any,
     within: float,
 ) -> float:
-    near = 0
-    c0, s0 = math.cos(yaw0), math.sin(yaw0)
-    c, s = math.cos(pose[2]), math.sin(pose[2])
+    view, near = _view_from(frame, pose[0], pose[1], pose[2]), 0
     height, width = distance.shape
     for k in range(points.shape[0]):
-        dx = pose[0] + c * points[k, 0] - s * points[k, 1] - x0
-        dy = pose[1] + s * points[k, 0] + c * points[k, 1] - y0
-        u, v = (c0 * dx + s0 * dy) / resolution, (c0 * dy - s0 * dx) / resolution
-        if 0.0 <= u < width and 0.0 <= v < height:
-            near += distance[int(v), int(u)] <= within
+        row, column = _cell_at(view, points[k, 0], points[k, 1], height, width)
+        near += row >= 0 and distance[row, column] <= within
     return float(near / points.shape[0])
 
 
@@ -214,10 +233,7 @@ def _share_within(
 def _refine(
     field: Any,
     outside: float,
-    x0: float,
-    y0: float,
-    yaw0: float,
-    resolution: float,
+    frame: tuple[float, float, float, float],
     poses: Any,
     points: Any,
     scores: Any,
@@ -226,7 +242,7 @@ def _refine(
 ) -> None:
     for i in range(poses.shape[0]):
         x, y, yaw = poses[i, 0], poses[i, 1], poses[i, 2]
-        best = _score(field, outside, x0, y0, yaw0, resolution, x, y, yaw, points)
+        best = _score(field, outside, frame, x, y, yaw, points)
         along, turn = step_m, step_rad
         for _ in range(4):
             for _ in range(20):
@@ -236,9 +252,7 @@ def _refine(
                     tx = x + sign * along * (axis // 2 == 0)
                     ty = y + sign * along * (axis // 2 == 1)
                     tyaw = yaw + sign * turn * (axis // 2 == 2)
-                    score = _score(
-                        field, outside, x0, y0, yaw0, resolution, tx, ty, tyaw, points
-                    )
+                    score = _score(field, outside, frame, tx, ty, tyaw, points)
                     if score > best:
                         best, bx, by, byaw = score, tx, ty, tyaw
                 x, y, yaw = bx, by, byaw

@@ -13,6 +13,7 @@ from navette.navigation.localization.amcl.confidence import (
     LocalizationState,
 )
 from navette.navigation.localization.amcl.estimate import ParticleEstimate
+from navette.navigation.localization.amcl.hypotheses import RecentScans
 from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
     Points,
@@ -25,6 +26,9 @@ from navette.navigation.localization.amcl.particle_filter import ParticleFilter
 _REST_UPDATE_NS = 1_000_000_000
 # Period of searches of the whole map while the robot is lost.
 _SEARCH_NS = 1_000_000_000
+# Period of comparisons with all places of the map before it counts as localized.
+_COMPARE_NS = 500_000_000
+_SAME_M = 0.5  # distance below which two estimates are of one place
 _FARTHEST_M = 1e6  # of a standard deviation
 _LOST_SHARE = 0.5  # of the particles that such a search replaces
 
@@ -38,6 +42,8 @@ class Located(NamedTuple):
         map_T_odom: correction of the odometry; None until it was localized once.
         match: share of the beams that end at obstacles of the map.
         is_updated: whether the filter was updated.
+        hypotheses: places of the map that explain the newest scans equally well; 1
+            while the robot is localized.
     """
 
     state: LocalizationState
@@ -45,6 +51,7 @@ class Located(NamedTuple):
     map_T_odom: Pose2 | None
     match: float
     is_updated: bool
+    hypotheses: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +95,16 @@ class MapLocalizer:
         self._searched_ns = -_SEARCH_NS
         self._map_T_odom: Pose2 | None = None
         self._is_given = False  # the pose, and no scan has contradicted it yet
+        self._recent = RecentScans()
+        self._hypotheses = 1
+        self._compared_ns = -_COMPARE_NS
 
     def set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
         """Continue from a pose; covariance (3, 3) of x, y, yaw."""
         self.filter.set_pose(pose, covariance)
         self.confidence.restart(is_given=True)
         self._is_given = True
+        self._hypotheses = 1
         self._updated = None
 
     def locate_globally(self) -> None:
@@ -102,6 +113,7 @@ class MapLocalizer:
         self.filter.weights = np.empty(0)
         self.confidence.restart(is_given=False)
         self._is_given = False
+        self._recent.clear()
         self._updated = None
 
     def request_update(self) -> None:
@@ -111,6 +123,9 @@ class MapLocalizer:
     def step(self, scan: ScanView) -> Located:
         """Use a scan."""
         used = thinned(scan.points, self.params.max_beams)
+        if self.confidence.state is LocalizationState.LOST:
+            self._recent.clear()  # it may have been carried
+        self._recent.add(used, scan.odom_T_base)
         if self.filter.is_empty:
             if not self.filter.locate_globally(used):
                 return Located(self.confidence.state, None, None, 0.0, False)
@@ -149,6 +164,8 @@ class MapLocalizer:
             match, estimate.stddev_m, estimate.share, scan.stamp_ns
         )
         localized = LocalizationState.LOCALIZED
+        if state is localized and before is not localized and not self._is_given:
+            state = self._compare(scan, pose)
         is_new = is_updated or before is not localized
         if (state is localized and is_new) or (self._is_given and is_updated):
             self._map_T_odom = map_T_odom
@@ -156,7 +173,29 @@ class MapLocalizer:
             self._is_given = False
             if not self.confidence.is_promising:
                 self._search(scan)
-        return Located(state, estimate, self._map_T_odom, match, is_updated)
+        return Located(
+            state, estimate, self._map_T_odom, match, is_updated, self._hypotheses
+        )
+
+    def _compare(self, scan: ScanView, pose: Pose2) -> LocalizationState:
+        """Return localized if no other place explains the newest scans as well.
+
+        Otherwise the filter continues with all these places.
+        """
+        if 0 <= scan.stamp_ns - self._compared_ns < _COMPARE_NS:
+            self.confidence.doubt()
+            return self.confidence.state
+        self._compared_ns = scan.stamp_ns
+        used = thinned(scan.points, self.params.max_beams)
+        points = self._recent.seen_from(used, scan.odom_T_base)
+        found = self.filter.hypotheses(pose, points)
+        self._hypotheses = len(found.poses)
+        best = Pose2(*found.poses[0].tolist())
+        if self._hypotheses > 1 or best.distance_to(pose) > _SAME_M:
+            self.filter.spread_over(found)
+            self._updated = scan
+            self.confidence.doubt()
+        return self.confidence.state
 
     def _search(self, scan: ScanView) -> None:
         if 0 <= scan.stamp_ns - self._searched_ns < _SEARCH_NS:

@@ -249,6 +249,7 @@ class AmclNode(StageNode):
             stddev_m=estimate.stddev_m,
             share=estimate.share,
             particles=len(self._particles),
+            hypotheses=located.hypotheses,
         )
         if not located.is_updated:
             return

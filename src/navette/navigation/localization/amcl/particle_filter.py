@@ -19,6 +19,7 @@ from navette.navigation.localization.amcl.global_search import (
     Candidates,
     search_map,
 )
+from navette.navigation.localization.amcl.hypotheses import hypotheses
 from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
     Points,
@@ -133,6 +134,18 @@ class ParticleFilter:
         order = self._rng.permutation(len(self.particles))[:count]
         self.particles[order] = self._around(found, count)
         self.weights = np.full(len(self.particles), 1.0 / len(self.particles))
+
+    def hypotheses(self, pose: Pose2, points: Points) -> Candidates:
+        """Return the poses of the map that explain points as well as ``pose`` does."""
+        return hypotheses(self._field, points, pose)
+
+    def spread_over(self, found: Candidates) -> None:
+        """Continue with equally many particles around each of some poses."""
+        count = self.params.max_particles
+        chosen = np.arange(count) % len(found.poses)
+        noise = self._rng.normal(size=(count, 3)) * _SEED_STDDEV
+        self.particles = found.poses[chosen] + noise
+        self.weights = np.full(count, 1.0 / count)
 
     def _forget_means(self) -> None:
         self._slow = self._fast = 0.0

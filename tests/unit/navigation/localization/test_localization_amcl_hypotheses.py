@@ -1,0 +1,89 @@
+"""AMCL in rooms that look alike: certainty only where one place explains the scans."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.grids import GridSpec
+from navette.navigation.localization.amcl import AmclParams
+from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.localizer import (
+    Located,
+    MapLocalizer,
+    ScanView,
+    default_covariance,
+)
+
+CELL_M, ROOM_M = 0.05, 5.0
+SPEC = GridSpec(CELL_M, 200, 100, Pose2(0.0, 0.0, 0.0))
+
+
+def twin_rooms(*, mark: bool) -> NDArray[np.int8]:
+    """Two rooms of 5 m × 5 m with equal furniture; ``mark``: a locker in the second."""
+    cells = np.zeros(SPEC.shape, np.int8)
+    for left in (0, 100):
+        room = cells[:, left : left + 100]
+        room[:2], room[-2:], room[:, :2], room[:, -2:] = 100, 100, 100, 100
+        room[20:30, 20:50] = 100
+        room[70:90, 60:70] = 100
+    if mark:
+        cells[85:98, 102:112] = 100
+    return cells
+
+
+def scan(cells: NDArray[np.int8], pose: Pose2) -> NDArray[np.float64]:
+    """Return where 90 beams over 180 degrees end (N, 2), base frame."""
+    angles = np.linspace(-math.pi / 2, math.pi / 2, 90)
+    along = np.arange(0.0, 8.0, CELL_M / 2)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    points = rays[:, None] * along[:, None]
+    column, row = np.floor(pose.apply(points.reshape(-1, 2)) / CELL_M).astype(int).T
+    inside = (row >= 0) & (row < 100) & (column >= 0) & (column < 200)
+    hit = np.zeros(len(row), np.bool_)
+    hit[inside] = cells[row[inside], column[inside]] == 100
+    return points[np.arange(90), hit.reshape(90, -1).argmax(axis=1)]
+
+
+def drive(
+    localizer: MapLocalizer, cells: NDArray[np.int8], poses: list[Pose2]
+) -> list[Located]:
+    return [
+        localizer.step(ScanView(scan(cells, pose), pose, number * 200_000_000))
+        for number, pose in enumerate(poses)
+    ]
+
+
+# Below the locker's view at first, then turning towards it.
+AHEAD = [Pose2(6.0 + 0.1 * k, 2.4, 0.0) for k in range(15)]
+TURN = [Pose2(7.4, 2.4, 0.1 * k) for k in range(1, 26)]
+
+
+def test_equal_rooms_are_not_claimed() -> None:
+    cells = twin_rooms(mark=False)
+    localizer = MapLocalizer(AmclParams(seed=3), cells, SPEC)
+    found = drive(localizer, cells, [*AHEAD, *TURN])
+    assert {each.state for each in found} == {LocalizationState.LOCALIZING}
+    assert found[-1].hypotheses == 2
+    assert all(each.map_T_odom is None for each in found)
+
+
+def test_what_distinguishes_the_rooms_decides() -> None:
+    cells = twin_rooms(mark=True)
+    localizer = MapLocalizer(AmclParams(seed=3), cells, SPEC)
+    found = drive(localizer, cells, [*AHEAD, *TURN, *[TURN[-1]] * 15])
+    assert found[12].state is LocalizationState.LOCALIZING
+    assert found[-1].state is LocalizationState.LOCALIZED
+    assert found[-1].hypotheses == 1
+    correction = found[-1].map_T_odom
+    assert correction is not None
+    assert (correction @ TURN[-1]).distance_to(TURN[-1]) < 0.1
+
+
+def test_a_given_pose_decides() -> None:
+    cells = twin_rooms(mark=False)
+    localizer = MapLocalizer(AmclParams(seed=3), cells, SPEC)
+    localizer.set_pose(AHEAD[0], default_covariance(localizer.params))
+    found = drive(localizer, cells, AHEAD)
+    assert found[-1].state is LocalizationState.LOCALIZED
