@@ -115,6 +115,11 @@ RUNS = {
         speed=6,
         world=clutter(3),
     ),
+    "table": Run(
+        {"world": "table", "sensors": ("d435",), "goals": ((4.0, 0.0),)},
+        View(size=(640, 448), origin=(320, 224), scale=60),
+        speed=4,
+    ),
     "corner": Run(
         {
             "world": "course",
