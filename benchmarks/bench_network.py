@@ -1,7 +1,8 @@
 """Round trips between two processes of one machine, compared with Zenoh and a peer.
 
 The same bytes, as a sensor_msgs/Image, are sent to a second process, which returns
-them: Navette's nodes with queues, CDR and executor; zenoh-python, which moves bytes
+them: Navette's nodes with queues, CDR and executor, decoded or as bytes (``raw=True``,
+what a recorder or a relay uses); zenoh-python, which moves bytes
 without encoding; zenoh-ros2-sdk, with the same wire format. All use Zenoh's shared
 memory. Half the time of a round trip is the latency of a message.
 """
@@ -31,7 +32,10 @@ def free_port() -> int:
 # -- the three implementations, each a function to send and one to subscribe --------
 
 
-def navette_peer(name: str, size: int, out: str, back: str) -> Any:
+def navette_peer(
+    name: str, size: int, out: str, back: str, *, raw: bool = False
+) -> Any:
+    from navette.msgs import serialize
     from navette.msgs.sensor_msgs.msg import Image
     from navette.runtime import Context, Executor, Node, QoSProfile
 
@@ -45,7 +49,7 @@ def navette_peer(name: str, size: int, out: str, back: str) -> Any:
     image.data = bytes(size)
 
     def listen(callback: Callable[[Any], None]) -> None:
-        node.create_subscription(Image, back, callback, QoSProfile(depth=10))
+        node.create_subscription(Image, back, callback, QoSProfile(depth=10), raw=raw)
 
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
@@ -55,7 +59,11 @@ def navette_peer(name: str, size: int, out: str, back: str) -> Any:
         thread.join()
         context.shutdown()
 
-    return image, publisher.publish, listen, close
+    return serialize(image) if raw else image, publisher.publish, listen, close
+
+
+def navette_bytes_peer(name: str, size: int, out: str, back: str) -> Any:
+    return navette_peer(name, size, out, back, raw=True)
 
 
 def zenoh_peer(name: str, size: int, out: str, back: str) -> Any:
@@ -116,6 +124,7 @@ def sdk_peer(name: str, size: int, out: str, back: str) -> Any:
 
 PEERS = {
     "navette": navette_peer,
+    "navette, bytes": navette_bytes_peer,
     "zenoh-python": zenoh_peer,
     "zenoh-ros2-sdk": sdk_peer,
 }
@@ -195,11 +204,8 @@ class Loop:
 
 def build(stack: ExitStack) -> Benchmark:
     bench = Benchmark("network", __doc__, budget_s=1.5)
-    peers = [
-        w
-        for w in PEERS
-        if w == "navette" or optional(w.replace("-", "_").replace("_python", ""))
-    ]
+    modules = {"zenoh-python": "zenoh", "zenoh-ros2-sdk": "zenoh_ros2_sdk"}
+    peers = [w for w in PEERS if w not in modules or optional(modules[w])]
     for label, size in SIZES.items():
         loops = {peer: Loop(peer, size, stack) for peer in peers}
         bench.case(f"{label}, round trip", loops)

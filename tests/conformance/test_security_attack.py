@@ -167,6 +167,13 @@ def scene(tmp_path: Path) -> Iterator[Scene]:
         yield Scene(machines, fleet, tmp_path)
 
 
+def keys_of_the_command(folder: Path, *names: str) -> list[Path]:
+    """Make keys as a user does."""
+    command = [sys.executable, "-m", "navette", "keys", "create", str(folder), *names]
+    subprocess.run(command, check=True, capture_output=True)
+    return [folder / name for name in names]
+
+
 def tls(folder: Path, authority: Path) -> dict[str, Any]:
     """Return Zenoh's settings for a certificate and the authority to trust."""
     return {
@@ -185,8 +192,10 @@ def tls(folder: Path, authority: Path) -> dict[str, Any]:
 def test_without_a_key_nothing_is_reached_and_nothing_is_readable(
     scene: Scene, tmp_path: Path
 ) -> None:
-    robot, laptop = create_keys(tmp_path / "ours", ["robot", "laptop"], now=NOW)
+    robot, laptop = keys_of_the_command(tmp_path / "ours", "robot", "laptop")
     (foreign,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
+    long_ago = NOW - datetime.timedelta(days=30)
+    (old,) = create_keys(tmp_path / "ours", ["old"], now=long_ago, days=7)
     scene.start({"robot": robot, "laptop": laptop}, "tls")
     scene.await_exchange()
 
@@ -200,6 +209,7 @@ def test_without_a_key_nothing_is_reached_and_nothing_is_readable(
             "config": {"transport/link/tls": unnamed},
         },
         "foreign certificate": {"protocol": "tls", "config": tls(foreign, robot)},
+        "expired certificate": {"protocol": "tls", "config": tls(old, robot)},
     }
     attempts = {
         f"{name} {mode}": {**kind, "mode": mode}
