@@ -34,6 +34,7 @@ VARIABLE = "NUMBA_CACHE_DIR"
 _SUFFIX = ".kernel"
 _DIGEST = hashlib.sha256
 _DIGEST_BYTES = 32
+_HASH_SYMBOLS = b"_numba_hashsecret"  # of sets and dicts; defined by a refresh
 _UNUSED_S = 30 * 86_400  # after which a file is deleted
 _log = logging.getLogger(__name__)
 
@@ -100,6 +101,8 @@ class KernelCache(NullCache):
             data = read(sig, target_context)
             if data is None:
                 continue
+            if _HASH_SYMBOLS in data:
+                target_context.refresh()
             try:
                 rebuild: Any = compiler.CompileResult._rebuild
                 return rebuild(target_context, *pickle.loads(data))
