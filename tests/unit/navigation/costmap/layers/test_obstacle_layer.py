@@ -177,7 +177,7 @@ def test_scans_without_usable_geometry_are_refused(changes: dict[str, float]) ->
     assert caught.value.reason == "out_of_range"
 
 
-def test_a_signalling_nan_is_no_echo() -> None:
+def test_a_signalling_nan_is_left_out() -> None:
     ranges = np.array([0x7F800001, 0x3F800000], np.uint32).view(np.float32)
     msg = LaserScan(angle_increment=0.1, range_max=5.0, ranges=ranges)
     assert len(of_scan(msg, inf_is_valid=True).hits) == 1
