@@ -50,7 +50,7 @@ def run(
     """
     from navette.ros2.names import install, installed_rclpy
     from navette.ros2.names.process import run_alone, run_together
-    from navette.ros2.names.targets import read_programs
+    from navette.ros2.names.targets import read_programs, uncalled_main
     from navette.ros2.workspace import activate
     from navette.runtime import strict_mode
 
@@ -68,5 +68,8 @@ def run(
         )
     activate()
     programs = read_programs(words)
+    advice = uncalled_main(words)
+    if advice is not None:
+        click.echo(f"navette: {advice}", err=True)
     code = run_alone(programs[0]) if len(programs) == 1 else run_together(programs)
     raise click.exceptions.Exit(code)

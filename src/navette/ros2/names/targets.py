@@ -1,5 +1,6 @@
 """Parse the words after ``navette run`` into programs."""
 
+import ast
 from collections.abc import Sequence
 from dataclasses import replace
 from difflib import get_close_matches
@@ -95,6 +96,33 @@ def _near(path: Path) -> str:
     names = [each.name for each in folder.glob(f"*{path.suffix}")]
     close = get_close_matches(path.name, names, n=1)
     return f"; did you mean {folder / close[0]}?" if close else ""
+
+
+def uncalled_main(words: Sequence[str]) -> str | None:
+    """Return advice for a file that defines ``main()`` and never calls it."""
+    path = Path(words[0])
+    if path.suffix != ".py" or not path.is_file():
+        return None
+    try:
+        tree = ast.parse(path.read_bytes())
+    except (SyntaxError, ValueError):  # the run itself reports it
+        return None
+    defines = any(
+        isinstance(n, ast.FunctionDef) and n.name == "main" for n in tree.body
+    )
+    plain = [n for n in tree.body if not isinstance(n, (ast.FunctionDef, ast.ClassDef))]
+    used = {
+        name.id
+        for node in plain
+        for name in ast.walk(node)
+        if isinstance(name, ast.Name)
+    }
+    if not defines or "main" in used:
+        return None
+    return (
+        f"{path} defines main() but does not call it: navette run {path}:main starts "
+        "it, or add: if __name__ == '__main__': main()"
+    )
 
 
 def find_sources(words: Sequence[str]) -> list[Path]:

@@ -6,7 +6,7 @@ import pytest
 
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.ros2.names import targets
-from navette.ros2.names.targets import find_sources, read_programs
+from navette.ros2.names.targets import find_sources, read_programs, uncalled_main
 from navette.ros2.workspace import create_package
 
 
@@ -88,3 +88,21 @@ def test_an_executable_of_a_package(
         read_programs(["my_robot", "d"])
     with pytest.raises(UnknownNameError, match="'yours' not found"):
         read_programs(["yours", "drive"])
+
+
+@pytest.mark.parametrize(
+    ("text", "is_advised"),
+    [
+        ("def main(): pass\n", True),
+        ("def main(): pass\nmain()\n", False),
+        ("def main(): pass\nif __name__ == '__main__': main()\n", False),
+        ("print('hi')\n", False),
+        ("def main(:\n", False),
+    ],
+)
+def test_a_main_that_is_not_called(tmp_path: Path, text: str, is_advised: bool) -> None:
+    file = tmp_path / "talker.py"
+    file.write_text(text)
+    advice = uncalled_main([str(file)])
+    assert (advice is not None) == is_advised
+    assert not is_advised or f"navette run {file}:main" in str(advice)

@@ -82,6 +82,11 @@ def node(element: Element) -> LaunchDescriptionEntity:
 
 @reads_arguments(Node)
 def node_arguments(element: Element) -> dict[str, Any]:
+    if "type" in element.attributes and "exec" not in element.attributes:
+        raise element.error(
+            "attribute 'type' belongs to launch files of ROS 1; write "
+            f"exec={element.attributes['type']!r} (name= is optional)"
+        )
     return {
         "package": element.parts("pkg"),
         "name": element.parts("name"),

@@ -40,6 +40,13 @@ from navette.ros2.packages.launch.utilities.type_utils import (
 MAX_DEPTH = 32
 _SPACE = " \t\r\n"
 
+#: Substitution of ROS 1 → what to write instead.
+_OF_ROS_1 = {
+    "arg": "$(var NAME)",
+    "find": "$(find-pkg-share PACKAGE)",
+    "optenv": "$(env NAME DEFAULT)",
+}
+
 Maker = Callable[[list[Parts]], Substitution]
 
 SUBSTITUTIONS: dict[str, tuple[int, int, Maker]] = {
@@ -219,6 +226,10 @@ class _Reader:
 
 
 def _make(name: str, arguments: list[Parts], text: str) -> Substitution:
+    if name in _OF_ROS_1 and name not in SUBSTITUTIONS:
+        raise InvalidValueError(
+            f"{text!r} belongs to launch files of ROS 1; write {_OF_ROS_1[name]}"
+        )
     if name not in SUBSTITUTIONS:
         raise InvalidValueError(
             f"unknown substitution {text!r}; known: {', '.join(sorted(SUBSTITUTIONS))}"

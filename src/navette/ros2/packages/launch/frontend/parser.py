@@ -26,6 +26,15 @@ FORMATS: dict[str, Callable[[bytes, Path], Element]] = {
 }
 """File ending → reader."""
 
+#: Tag of ROS 1 → what to write instead.
+_OF_ROS_1 = {
+    "machine": "start a launch on each machine",
+    "param": '<param> inside <node>, or <set_parameter name="…" value="…"/>',
+    "remap": '<remap> inside <node>, or <set_remap from="…" to="…"/>',
+    "rosparam": '<param from="FILE"/> inside <node>',
+    "test": "launch_testing",
+}
+
 EntityMaker = Callable[[Element], LaunchDescriptionEntity]
 ACTIONS: dict[str, EntityMaker] = {}
 """Tag → factory of its action."""
@@ -90,6 +99,10 @@ def parse_element(element: Element) -> LaunchDescriptionEntity:
     """
     for name in EXTENSIONS:
         importlib.import_module(name)
+    if element.tag in _OF_ROS_1:
+        raise element.error(
+            f"a tag of ROS 1's launch files; instead: {_OF_ROS_1[element.tag]}"
+        )
     if element.tag not in ACTIONS:
         raise element.error(f"unknown tag; known: {', '.join(sorted(ACTIONS))}")
     try:
