@@ -11,8 +11,8 @@ export const PLANNER_STATUS = "/planner/status";
 export const CONTROL_STATUS = "/control/status";
 export const COMMANDER = "/commander";
 export const CONTACTS = "/contacts";
-/** In the order in which the first that exists is used. */
-export const ODOMETRY = ["/ground_truth", "/odom/filtered", "/odometry/filtered", "/odom"];
+/** In the order in which the first that exists is used: estimates, as a robot has them, before the truth. */
+export const ODOMETRY = ["/odom/filtered", "/odometry/filtered", "/odom", "/ground_truth"];
 /** The arbiter's topic for operators, or that of a robot without an arbiter. */
 export const DRIVE = ["/cmd_vel_teleop", "/cmd_vel"];
 /** Plays a recording: its subscriptions and publications are no robot's. */

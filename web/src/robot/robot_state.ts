@@ -2,7 +2,7 @@
 
 import type { Connection, Dispose } from "../connection/connection";
 import { transformOf, valuesOf, type DiagnosticStatus, type Odometry, type PointStamped, type PoseStamped } from "../scene/messages";
-import { fromYaw, yawOf, type Transform } from "../transforms/transform";
+import { apply, fromYaw, yawOf, type Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
 import {
   COMMANDER, CONTACTS, CONTROL_STATUS, DRIVE, GOAL_POINT, GOAL_POSE, ODOMETRY, OUTLINE, PLANNER_STATUS, PLAYER,
@@ -125,6 +125,16 @@ export class RobotState {
     return this.baseFrame === null ? null : this.transforms.lookUp(fixed, this.baseFrame);
   }
 
+  /** The pose of the odometry in the root of its frames, such as the map. */
+  placeOfMotion(): { x: number; y: number; yawDeg: number } | null {
+    const { motion, transforms } = this;
+    if (!motion) return null;
+    const root_T_odom = transforms.lookUp(transforms.root(motion.frame), motion.frame);
+    if (!root_T_odom) return motion;
+    const [x, y] = apply(root_T_odom, [motion.x, motion.y, 0]);
+    return { x, y, yawDeg: wrapDeg(motion.yawDeg + (yawOf(root_T_odom.rotation) * 180) / Math.PI) };
+  }
+
   noteSent(goal: Goal): void {
     this.#sent = this.#goal = goal;
     this.#notify();
@@ -241,4 +251,8 @@ export class RobotState {
 /** The goal as a transform of its frame. */
 export function placeOf({ x, y, yaw }: Goal): Transform {
   return { translation: [x, y, 0], rotation: fromYaw(yaw ?? 0) };
+}
+
+function wrapDeg(angle: number): number {
+  return angle - 360 * Math.round(angle / 360);
 }

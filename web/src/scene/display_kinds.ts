@@ -1,6 +1,7 @@
 /** Which display shows a topic: by type, with settings that suit its name. */
 
 import type { Topic } from "../connection/connection";
+import { ODOMETRY } from "../robot/names";
 import type { Display, DisplayTraits, Surroundings } from "./display";
 import { GridMapDisplay } from "./displays/grid_map";
 import { MarkersDisplay } from "./displays/markers";
@@ -46,7 +47,10 @@ function traitsOf(topic: string, type: string, has: (topic: string) => boolean):
   if (topic === "/amcl_pose" || topic.startsWith("/planner/") || topic.endsWith("/published_footprint")) return { isShown: false };
   // The goal has a mark of its own, and what people publish here is no state.
   if (["/goal_point", "/goal_pose", "/initialpose", "/clicked_point"].includes(topic)) return { isShown: false };
-  if (type.endsWith("/Odometry")) return { isShown: topic === "/ground_truth" || !has("/ground_truth") };
+  if (type.endsWith("/Odometry")) {
+    const first = ODOMETRY.find(has);
+    return { isShown: first === undefined || topic === first };
+  }
   if (type.endsWith("/PoseStamped") || type.endsWith("/PoseWithCovarianceStamped")) return { isShown: true };
   return {};
 }

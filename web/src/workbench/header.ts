@@ -64,8 +64,10 @@ export class Header {
 
   #drawFacts(): void {
     const { motion, goal, contacts, stages, connection } = this.robot;
-    this.#fact("position", motion && `${fixed(motion.x, 2)}, ${fixed(motion.y, 2)}`, "m");
-    this.#fact("heading", motion && fixed(motion.yawDeg, 0), "°");
+    // Odometry may be in a frame that drifts; people read places of the map.
+    const place = motion && this.robot.placeOfMotion();
+    this.#fact("position", place && `${fixed(place.x, 2)}, ${fixed(place.y, 2)}`, "m");
+    this.#fact("heading", place && fixed(place.yawDeg, 0), "°");
     this.#fact("speed", motion && fixed(motion.speedMps, 2), "m/s");
     this.#fact("goal", goal && `${fixed(goal.x, 1)}, ${fixed(goal.y, 1)}`, "m");
     this.#fact("contacts", contacts > 0 ? String(contacts) : null, "");
