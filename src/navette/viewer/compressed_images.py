@@ -36,7 +36,7 @@ _DEPTHS = {"mono16": "u2", "16UC1": "u2", "32FC1": "f4"}
 
 
 def compressed_ends(ends: Iterable[TopicEnd], node: str) -> list[TopicEnd]:
-    """Return the publishers of ``node`` for images that nobody compresses.
+    """Return the publishers of ``node`` for images that no node compresses.
 
     Args:
         ends: the endpoints of the graph.
@@ -104,7 +104,7 @@ def _grey(values: NDArray[Any], *, is_depth: bool) -> NDArray[np.uint8]:
 
 
 class ImageCompressor:
-    """Compresses images in a thread of its own; drops those that come too soon.
+    """Compresses images in a thread of its own; drops images that come too soon.
 
     Args:
         rate_hz: most images per second of each topic.
