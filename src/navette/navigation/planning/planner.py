@@ -66,8 +66,9 @@ _STEERABLE_M = 0.02
 _AT_GOAL_M = 0.03
 # Searches on the map's own cells, and through gaps, get this part of the budget.
 _QUICK_SHARE = 4
-# In a passage the clearance varies by this, and is not planned below the least.
-_SWAY_M, _LEAST_M = 0.01, 0.01
+# In a passage the clearance varies by this, and is not planned below the least, which
+# is what the controller keeps: it would refuse a path with less.
+_SWAY_M, _LEAST_M = 0.01, 0.025
 
 
 @dataclass(frozen=True)

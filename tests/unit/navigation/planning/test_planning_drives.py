@@ -9,6 +9,7 @@ from planning_worlds import empty_map, fill
 
 from navette.errors import ParameterError
 from navette.geometry import DRIVES, Pose2
+from navette.navigation.control import ControlParams
 from navette.navigation.planning import Goal, Planner, PlannerParams
 from navette.navigation.planning.lattice_motions import MOVES, Motions
 from navette.navigation.planning.path_shape import bend, directions, lengths
@@ -131,3 +132,19 @@ def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
     assert found.outcome.has_path
     assert found.margin_m > 0.02
     assert (turned(found.poses) <= lengths(found.poses) / RADIUS_M + 0.05).all()
+
+
+def test_a_robot_off_the_middle_of_a_passage_plans_what_the_controller_allows() -> None:
+    """With less clearance than the controller's margin, it would stay blocked."""
+    occupancy, spec = empty_map(8, 8)
+    low, high = 3.77, 4.23
+    fill(occupancy, spec, (2.0, 6.0), (0.0, low))
+    fill(occupancy, spec, (2.0, 6.0), (high, 8.0))
+    along = np.arange(2.0, 6.0, 0.02)
+    walls = np.array([(x, y) for y in (low, high) for x in along])
+    body = (0.3, 0.2, -0.3, 0.2, -0.3, -0.2, 0.3, -0.2)
+    planner = Planner(replace(PARAMS["differential"], footprint_m=body))
+    planner.set_map(occupancy, spec, walls)
+    found = planner.plan(Pose2(3.0, 4.01, 0.0), Goal(7.0, 4.0))
+    assert found.outcome.has_path
+    assert found.margin_m >= ControlParams().collision_margin_m
