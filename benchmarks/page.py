@@ -50,6 +50,14 @@ WHY = {
     "worlds: Jackal, 300 m: factor": (
         "as at 200 m; the map is published in full and compared at each update."
     ),
+    "robots: jackal: factor": (
+        "a third is control (obstacles, distance field, 300 rollouts), a fifth physics "
+        "and lidar, a quarter costmaps and map, the rest planner, messages and poses."
+    ),
+    "robots: course: factor": (
+        "a fifth is control, a fifth physics and lidar, a quarter costmaps and map; "
+        "the rest is spread over planner, messages and poses."
+    ),
     "physics: a step of 2 ms": (
         "`mj_step` alone meets it; the rest is the drive, ten measurements of "
         "clearance a second, and resetting the robot."

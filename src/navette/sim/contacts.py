@@ -55,7 +55,7 @@ class ContactMonitor:
         other = np.where(compiled.is_ground, _GROUND, _OBSTACLE)
         self._kind = np.where(compiled.is_robot, part, other)
         self.episodes: list[ContactEpisode] = []
-        self._harmless = b""  # the newest pairs of geoms that are no contact
+        self._harmless = b""  # the newest pairs of geoms without a contact that counts
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
         self._touches: dict[tuple[int, int], Touch] = {}  # by the pair of geoms
 
