@@ -72,7 +72,8 @@ def drive(
     folder: Path,
     change: Callable[[Simulation], None] | None = None,
     at_s: float = 4.0,
-    **amcl: Any,
+    localization: str = "amcl",
+    **parameters: Any,
 ) -> Drive:
     """Drive to the goal; ``change`` disturbs the run at a time."""
     options = RunOptions(
@@ -82,9 +83,9 @@ def drive(
         goals=(GOAL,),
         headless=True,
         speed=math.inf,
-        known_map=map_file(folder),
-        methods={"localization": "amcl", "controller": "pure_pursuit"},
-        parameters={"amcl": amcl} if amcl else {},
+        known_map=map_file(folder) if localization == "amcl" else None,
+        methods={"localization": localization, "controller": "pure_pursuit"},
+        parameters={localization: parameters} if parameters else {},
         max_time_s=60.0,
     )
     simulation, found = Simulation(options, scene=rooms()), Drive()
@@ -157,9 +158,12 @@ def test_a_carried_robot_is_found(tmp_path: Path) -> None:
 
 
 def jump(simulation: Simulation) -> None:
-    """Shift the wheel odometry, as a fault of an encoder does."""
-    odometry = simulation.sim.simulator.wheel_odometry()
-    odometry.pose = odometry.pose @ Pose2(0.7, 0.3, 0.4)
+    """Shift the odometry, as a fault of an encoder or a restarted filter does."""
+    (ekf,) = (node for node in simulation.context.nodes if node.get_name() == "ekf")
+    pose = ekf._filter.ekf.estimate_at(ekf._filter.ekf.stamp_ns)
+    x, y, yaw = pose.state[:3].tolist()
+    shifted = Pose2(x, y, yaw) @ Pose2(0.7, 0.3, 0.4)
+    ekf._filter.set_pose(shifted, np.eye(3) * 1e-6)
 
 
 def test_a_jump_of_the_odometry_is_corrected(tmp_path: Path) -> None:

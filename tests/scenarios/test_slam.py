@@ -1,0 +1,52 @@
+"""SLAM in a whole run: outcomes of what goes wrong, and the map of a large office."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from bench_office import NOISE, WITHIN_M
+
+from navette.navigation.bench.large_office import lethal_cells_near, make_large_office
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.simulation import Simulation
+
+from .test_amcl import blind, drive, jump
+
+pytestmark = pytest.mark.long
+
+
+@pytest.mark.parametrize("change", [None, jump, blind], ids=lambda each: str(each))
+def test_disturbances_are_corrected(
+    tmp_path: Path, change: Callable[[Simulation], None] | None
+) -> None:
+    found = drive(tmp_path, change, localization="slam")
+    assert (found.result, found.contacts) == ("reached", 0)
+    assert found.final_m < 0.15
+
+
+def test_the_map_of_an_office_with_loops_is_exact() -> None:
+    office = make_large_office(1, seed=2)
+    options = RunOptions(
+        world="empty",
+        robot="jackal",
+        start=office.start,
+        goals=office.tour,
+        headless=True,
+        speed=math.inf,
+        methods={"localization": "slam"},
+        parameters={"sim": NOISE},
+        max_time_s=60.0,
+    )
+    simulation = Simulation(options, scene=office.scene)
+    try:
+        simulation.run()
+        summary, memory = simulation.summary(), simulation.stack.map_memory._memory
+        assert [goal.result for goal in summary.goals] == ["reached"] * 5
+        assert summary.contacts == 0
+        near = lethal_cells_near(office, memory.occupancy(), memory.spec, WITHIN_M)
+        assert near >= 0.98
+        assert summary.pose_error_m.final is not None
+        assert summary.pose_error_m.final < 0.15
+    finally:
+        simulation.close()
