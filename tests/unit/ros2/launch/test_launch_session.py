@@ -80,7 +80,11 @@ def stuck():
     import threading
 
     print("stuck")
-    threading.Event().wait()
+    while True:  # an interrupt may arrive before the wait
+        try:
+            threading.Event().wait()
+        except KeyboardInterrupt:
+            pass
 '''
 TAIL = """
 from launch import LaunchDescription
