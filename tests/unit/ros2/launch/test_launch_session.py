@@ -79,12 +79,11 @@ def broken():
 def stuck():
     import threading
 
-    print("stuck")
-    while True:  # an interrupt may arrive before the wait
-        try:
-            threading.Event().wait()
-        except KeyboardInterrupt:
-            pass
+    try:
+        print("stuck")
+        threading.Event().wait()
+    except KeyboardInterrupt:  # it may arrive before the wait
+        threading.Event().wait()
 '''
 TAIL = """
 from launch import LaunchDescription
