@@ -49,7 +49,7 @@ def drive(error: Pose2, until_s: float) -> tuple[list[str], set[str], float, int
         resolved.override_parameters(context.overrides)
         context.overrides.add("missions", {"goals_m": list(GOAL)}, "test")
         # Wheel odometry without noise: the correction is the only error.
-        exact = {"localization": "amcl", "wheel_noise_m": 0.0}
+        exact = {"localization": "amcl+wheels", "wheel_noise_m": 0.0}
         context.overrides.add("sim", exact, "test")
         sim = SimNode(resolved.scene, start=Pose2(0.0, 0.0, 0.0), context=context)
         Corrector(error, until_s, context)

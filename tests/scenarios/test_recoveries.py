@@ -1,5 +1,6 @@
 """The recovery ladder of the default tree, with wheels that do not turn at first."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -137,7 +138,7 @@ def test_a_robot_whose_nose_is_stuck_backs_up_along_its_path_and_arrives(
 def test_the_last_rung_backs_up_and_plans_around_the_place(
     simulate: MakeSimulation, impatient: Path
 ) -> None:
-    """Beyond x = 1 m the robot can only back up, until it does so the second time."""
+    """Beyond x = 1 m the robot can only go back, until it does so the second time."""
     room = World("room").add_walls((10.0, 10.0)).scene()
     simulation = simulate(
         scene=room,
@@ -158,7 +159,12 @@ def test_the_last_rung_backs_up_and_plans_around_the_place(
 
     def command(linear: float, angular: float, side: float = 0.0) -> bool:
         held = positions and positions[-1][1] >= 1.0 and "BackUp" not in names
-        return drive(min(linear, 0.0), 0.0) if held else drive(linear, angular, side)
+        if not held:
+            return drive(linear, angular, side)
+        goes_back = (
+            linear * math.cos(simulation.sim.simulator.pose().to_pose2().yaw) < 0
+        )
+        return drive(linear if goes_back else 0.0, 0.0)
 
     simulation.sim.simulator.command = command  # type: ignore[method-assign]
     simulation.run()

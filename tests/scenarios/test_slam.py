@@ -16,7 +16,7 @@ from .test_amcl import blind, drive, jump
 pytestmark = pytest.mark.long
 
 
-@pytest.mark.parametrize("change", [None, jump, blind], ids=lambda each: str(each))
+@pytest.mark.parametrize("change", [None, jump, blind], ids=["none", "jump", "blind"])
 def test_disturbances_are_corrected(
     tmp_path: Path, change: Callable[[Simulation], None] | None
 ) -> None:

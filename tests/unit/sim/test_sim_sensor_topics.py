@@ -169,9 +169,9 @@ def test_a_robot_with_a_ring_lidar_alone_has_a_planar_scan(tmp_path: Path) -> No
 
 def test_ranges_and_fixes() -> None:
     robot = Robot("hc_sr04", "neo_m8n")
-    robot.listen("/sonar", "/fix")
+    robot.listen("/sonar", "/fix/neo_m8n")  # the Jackal has a receiver
     robot.run(0.3)
-    reading, fix = robot.received["/sonar"][0], robot.received["/fix"][0]
+    reading, fix = robot.received["/sonar"][0], robot.received["/fix/neo_m8n"][0]
     assert reading.radiation_type == reading.ULTRASOUND
     assert reading.field_of_view == pytest.approx(math.radians(15.0))
     assert reading.range == pytest.approx(2.75, abs=0.1)

@@ -46,10 +46,10 @@ def sensor_of(sim: Simulator, kind: type[Sensor]) -> Sensor:
     return sensor
 
 
-def place(sim: Simulator, kind: type[Sensor]) -> np.ndarray:
+def place(sim: Simulator, kind: type[Sensor], index: int = 0) -> np.ndarray:
     """Position of a sensor in the world."""
     sim.clearance()
-    return sim.devices[kind][0].mount.world(sim._data)[0]
+    return sim.devices[kind][index].mount.world(sim._data)[0]
 
 
 # Depth camera
@@ -196,9 +196,9 @@ def test_a_fix_is_the_position_on_the_earth_with_the_noise_of_the_data_sheet() -
     scene = Scene(name="e", models=flat.models, origin=origin)
     sim = simulator(scene, "neo_m8n", start=Pose2(30.0, 0.0, 0.0))
     plane = LocalPlane(GeoPoint(47.0, 8.0))
-    fixes = [sim.read(GnssSensor).point for _ in range(400)]
+    fixes = [sim.read(GnssSensor, 1).point for _ in range(400)]  # 0: the Jackal's
     places = np.array([plane.east_north(each) for each in fixes])
-    antenna = place(sim, GnssSensor)
+    antenna = place(sim, GnssSensor, 1)
     # The world's x axis points 90° from east: north.
     assert places.mean(axis=0) == pytest.approx((-antenna[1], antenna[0]), abs=0.4)
     away = np.linalg.norm(places - places.mean(axis=0), axis=1)
@@ -379,7 +379,8 @@ def test_sdf_sensors_of_all_kinds(tmp_path: Path) -> None:
         text.replace("<sdf ", "<sdf xmlns:navette='n' ", 1), encoding="utf-8"
     )
     model = load_robot(file).model
-    found = {type(s): s for link in model.links for s in link.sensors}
+    sensors = [s for link in model.links for s in link.sensors]
+    found = {type(s): s for s in reversed(sensors)}  # the first of each kind
     rings = found[RingLidarSensor]
     assert isinstance(rings, RingLidarSensor)
     assert (rings.rings, rings.elevation_min, rings.elevation_max) == (8, -0.2, 0.3)

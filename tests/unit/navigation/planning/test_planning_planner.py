@@ -150,8 +150,8 @@ def test_a_walled_in_start_is_blocked() -> None:
 @pytest.mark.parametrize(
     ("start", "goal", "outcome"),
     [
-        (Pose2(1, 1, 0), Goal(401, 1), Outcome.GOAL_OUTSIDE_MAP),
-        (Pose2(1, 1, 0), Goal(-395, 1), Outcome.GOAL_OUTSIDE_MAP),
+        (Pose2(1, 1, 0), Goal(601, 1), Outcome.GOAL_OUTSIDE_MAP),
+        (Pose2(1, 1, 0), Goal(-595, 1), Outcome.GOAL_OUTSIDE_MAP),
         (Pose2(9, 1, 0), Goal(1, 1), Outcome.START_OUTSIDE_MAP),
         (Pose2(1, 1, 0), Goal(math.nan, 1), Outcome.GOAL_NOT_FINITE),
         (Pose2(1, 1, 0), Goal(1, math.inf), Outcome.GOAL_NOT_FINITE),
