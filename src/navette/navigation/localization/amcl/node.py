@@ -139,7 +139,7 @@ class AmclNode(StageNode):
 
     def _height_of(self, msg: LaserScan) -> float:
         """Return the height of the scanner above the base, m."""
-        base, frame_id = self.params.base_frame_id, msg.header.frame_id
+        base, frame_id = self._tracker.base_frame, msg.header.frame_id
         if frame_id == base:
             return 0.0
         return self._tracker.buffer.lookup(base, frame_id, 0).translation[2]
@@ -183,7 +183,11 @@ class AmclNode(StageNode):
 
     def on_params_changed(self, old: AmclParams) -> None:
         """Start again with the new values, at the present pose."""
-        if self.params.odom_frame_id != old.odom_frame_id:
+        new = self.params
+        if (new.base_frame_id, new.odom_frame_id) != (
+            old.base_frame_id,
+            old.odom_frame_id,
+        ):
             self._tracker = self._new_tracker()
         if self._map is not None:
             self._begin(self._map)
