@@ -13,7 +13,7 @@ from navette.sim.masks import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
 from navette.sim.ray_kernels import cast_fan, readings
-from navette.sim.sensor_specs import LidarSensor
+from navette.sim.sensor_specs import LidarSensor, RingLidarSensor
 from navette.sim.shape_table import ShapeTable
 
 _LEVEL = np.zeros(1)  # elevation of the beams
@@ -35,12 +35,14 @@ class Scan:
     ranges: NDArray[np.float32]
 
 
-class Lidar:
-    """Casts the beams of one sensor; the robot itself is invisible to it."""
+class BeamSensor:
+    """Mount, noise and visible shapes of a scanner; the robot is invisible to it."""
+
+    sensor: LidarSensor | RingLidarSensor
 
     def __init__(
         self,
-        sensor: LidarSensor,
+        sensor: LidarSensor | RingLidarSensor,
         mount: Mount,
         params: SimParams,
         compiled: Compiled,
@@ -50,18 +52,33 @@ class Lidar:
         self.set_noise(params)
         groups = (SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID)
         self._shapes = ShapeTable(compiled.model, groups, compiled.surfaces)
-        n = sensor.samples
-        self._angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
-        self.angle_increment = (
-            float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
-        )
-        self._distance, self._no_noise = np.empty(n), np.zeros(n)
 
     def set_noise(self, params: SimParams) -> None:
         """Set noise and share of lost beams; below 0 means the sensor's own noise."""
         own = params.lidar_noise_m < 0
         self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
         self._dropout = params.lidar_dropout
+
+
+class Lidar(BeamSensor):
+    """Casts the beams of one planar lidar."""
+
+    sensor: LidarSensor
+
+    def __init__(
+        self,
+        sensor: LidarSensor,
+        mount: Mount,
+        params: SimParams,
+        compiled: Compiled,
+    ) -> None:
+        super().__init__(sensor, mount, params, compiled)
+        n = sensor.samples
+        self._angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
+        self.angle_increment = (
+            float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
+        )
+        self._distance, self._no_noise = np.empty(n), np.zeros(n)
 
     def warm_up(self) -> None:
         """Compile the kernels, which takes seconds on the very first run."""

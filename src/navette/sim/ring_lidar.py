@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 
 from navette.sim.build import Compiled
 from navette.sim.instant import Instant
-from navette.sim.lidar import Scan
-from navette.sim.masks import SEEN, SEEN_SOLID, SOLID
+from navette.sim.lidar import BeamSensor, Scan
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
 from navette.sim.sensor_specs import RingLidarSensor
-from navette.sim.shape_table import ShapeTable, ring_directions
+from navette.sim.shape_table import ring_directions
 
 _PERCENT = 100.0  # of calibrated reflectivity, as the intensity of diffuse surfaces
 
@@ -34,8 +33,10 @@ class RingScan:
     points: NDArray[np.float32]
 
 
-class RingLidar:
-    """Casts the beams of one sensor; the robot itself is invisible to it."""
+class RingLidar(BeamSensor):
+    """Casts the beams of one lidar with several rings."""
+
+    sensor: RingLidarSensor
 
     def __init__(
         self,
@@ -44,21 +45,11 @@ class RingLidar:
         params: SimParams,
         compiled: Compiled,
     ) -> None:
-        self.sensor = sensor
-        self.mount = mount
-        self.set_noise(params)
-        groups = (SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID)
-        self._shapes = ShapeTable(compiled.model, groups, compiled.surfaces)
+        super().__init__(sensor, mount, params, compiled)
         s = sensor
         self._azimuths = np.linspace(s.angle_min, s.angle_max, s.samples)
         self._elevations = np.linspace(s.elevation_min, s.elevation_max, s.rings)
         self._directions = ring_directions(self._azimuths, self._elevations)
-
-    def set_noise(self, params: SimParams) -> None:
-        """Set noise and share of lost beams; below 0 means the sensor's own noise."""
-        own = params.lidar_noise_m < 0
-        self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
-        self._dropout = params.lidar_dropout
 
     def read(self, instant: Instant, rng: np.random.Generator) -> RingScan:
         """Cast all beams."""

@@ -62,7 +62,7 @@ export class RunServices {
     check((await this.#call<{ result: Result }>("step_simulation", { steps: BigInt(steps) })).result);
   }
 
-  /** Robot and world return to the start; the goal is dropped, maps begin anew. */
+  /** Robot and world return to the start; the goal is dropped, maps start empty. */
   async reset(): Promise<void> {
     const { connection } = this;
     connection.publish(CANCEL_GOAL, "std_msgs/msg/Empty", {});

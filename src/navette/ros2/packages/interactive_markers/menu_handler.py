@@ -49,7 +49,7 @@ class MenuHandler:
         """Add an entry, below ``parent`` if given; return its handle.
 
         Returns:
-            None if there is no such parent.
+            None if the parent is unknown.
         """
         if parent is not None and parent not in self._entries:
             return None

@@ -72,7 +72,7 @@ def import_message_type(topic_name: str, message_type: str) -> Any:
     """Return the class of ``package/msg/Name``.
 
     Raises:
-        RuntimeError: the name is wrong, or there is no such message.
+        RuntimeError: the name is wrong, or no message has it.
     """
     try:
         return get_message(message_type)

@@ -138,7 +138,7 @@ def get_typed_value(
 
     Raises:
         TypeError: neither of these, or a list for a scalar type.
-        ValueError: there is no such value.
+        ValueError: a text cannot be read as the type.
     """
     if not isinstance(value, list):
         return coerce_to_type(value, data_type, can_be_str=can_be_str)
