@@ -249,7 +249,7 @@ class Navigator:
             self._checker.begin(now_ns)
             self._compared_ns = now_ns
         self._stepped_ns = now_ns
-        self.planner.hold(self._goal)
+        self.planner.map.hold(self._goal.x, self._goal.y)
         if unlocated is not None:
             self._drop_path()
             self._set_status(unlocated)
@@ -315,7 +315,7 @@ class Navigator:
         self, progress: PathProgress, here: Pose2, goal: Goal
     ) -> None:
         """Replace a valid path only by one that is cheaper by the margin."""
-        if not self.planner.take_cost_fall():
+        if not self.planner.map.take_cost_fall():
             return
         now_costs = self.planner.cost_of(progress.ahead)
         worth = (1 - self.params.switch_gain) * now_costs
@@ -335,7 +335,7 @@ class Navigator:
         if not plan.outcome.has_path and self._avoided.clear():
             self._apply_map()  # no other path exists
             plan = self.planner.plan(here, goal, exact_start=exact_start)
-        self.planner.take_cost_fall()
+        self.planner.map.take_cost_fall()
         self._map_changed = False
         if plan.outcome.has_path:
             self._accept(plan, here)

@@ -290,7 +290,7 @@ class PlannerNode(StageNode):
 
         def apply() -> None:
             if self._worker.is_busy:  # with a request, or a step that was dropped
-                self._navigator.planner.detach()
+                self._navigator.planner.map.detach()
                 received.share()
             changed = received.update(part)
             self._navigator.set_map(received.cells, received.spec, hits, changed)
@@ -418,7 +418,7 @@ class PlannerNode(StageNode):
             self._step_is_due = True
             return
         moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
-        self._navigator.planner.set_moving(moving)
+        self._navigator.planner.map.set_moving(moving)
         self._stepping = stepping = self._navigator.copy()
         robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
         unlocated = self._unlocated

@@ -128,7 +128,7 @@ def test_copies_keep_their_map_when_another_detaches() -> None:
     before = kept.grid().cost.copy()
     planner.grid()
     planner = kept.copy()
-    planner.detach()
+    planner.map.detach()
     planner.set_map(np.zeros(SPEC.shape, np.int8), SPEC)
     np.testing.assert_array_equal(kept.grid().cost, before)
     assert planner.grid().cost.max() == 0

@@ -1,0 +1,116 @@
+"""Plan with one clearance: the grid's route where the body fits, else a detour."""
+
+import math
+from dataclasses import dataclass, replace
+
+from navette.geometry import OMNI, Pose2
+from navette.navigation.planning.detour import DetourPlanner, Target
+from navette.navigation.planning.fitted_route import RouteFitter
+from navette.navigation.planning.goals import nearest_reachable
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.own_methods import Goal
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.path_shape import Poses
+from navette.navigation.planning.plan import Plan, cost_of
+from navette.navigation.planning.planning_grid import PlanningGrid
+from navette.navigation.planning.prepared_map import PreparedMap
+from navette.navigation.planning.route import GridRouter
+
+
+@dataclass(frozen=True)
+class MarginPlanner:
+    """Planner on one map; start and goal lie in it.
+
+    Attributes:
+        params: parameters; their clearances are not used.
+        map: the map.
+        router: search for routes of a point.
+        put_down_at: pose where the robot was put down; None: the start of each plan.
+    """
+
+    params: PlannerParams
+    map: PreparedMap
+    router: GridRouter
+    put_down_at: Pose2 | None
+
+    def plan(
+        self, margin_m: float, start: Pose2, goal: Goal, *, max_expansions: int
+    ) -> Plan:
+        """Plan a path of which the body keeps a margin."""
+        grid = self.map.opened(margin_m, start)
+        route, why_not = self._route(grid, start, goal)
+        if route is None:
+            return Plan(why_not)
+        fitter = RouteFitter(self.params, grid, self.map.body, goal)
+        fitting = fitter.fit(start, route)
+        if self.params.drive == OMNI and margin_m < self.params.clearance_margin_m:
+            fitting = fitter.held(start, fitting)
+        if fitting is not None and not fitter.ends_cramped(fitting):
+            return self.planned(goal, fitting, margin_m)
+        reach_m = path_end_reach_m(self.params)
+        target = Target(goal.x, goal.y, goal.yaw, reach_m)
+        detour = self._detours(grid, start, max_expansions).plan(start, target, route)
+        poses = fitting if detour.poses is None else detour.poses
+        if poses is None:
+            why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
+            return Plan(why, expansions=detour.expansions)
+        return self.planned(goal, poses, margin_m, detour.expansions)
+
+    def plan_on_grid(
+        self, margin_m: float, start: Pose2, goal: Goal, below_m: float
+    ) -> Plan | None:
+        """Plan with the grid search alone; None without a path that costs less."""
+        grid, body = self.map.opened(margin_m, start), self.map.body
+        goal_xy = goal.x, goal.y
+        route = self.router.route(grid, body, start, goal_xy, goal.yaw, below_m)
+        if route is None:
+            return None
+        poses = RouteFitter(self.params, grid, body, goal).fit(start, route)
+        return None if poses is None else self.planned(goal, poses, margin_m)
+
+    def planned(
+        self, goal: Goal, poses: Poses, margin_m: float, expansions: int = 0
+    ) -> Plan:
+        """Return the plan of a path, with its cost."""
+        off = math.dist(poses[-1, :2], (goal.x, goal.y))
+        snapped = off > self.params.path_end_tolerance_m
+        outcome = Outcome.GOAL_SNAPPED if snapped else Outcome.OK
+        cost = cost_of(poses, self.map.grid(), self.params)
+        return Plan(outcome, poses, cost, margin_m, expansions)
+
+    def _route(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal
+    ) -> tuple[Poses | None, Outcome]:
+        """Return the grid's route to the goal or near it, or None and the reason."""
+        body = self.map.body
+        route = self.router.route(grid, body, start, (goal.x, goal.y), goal.yaw)
+        if route is not None:
+            return route, Outcome.OK
+        cell = grid.cell_of(start.x, start.y)
+        assert cell is not None, "the start lies in the map"
+        reach_m = path_end_reach_m(self.params)
+        near, outcome = nearest_reachable(grid, cell, (goal.x, goal.y), reach_m, body)
+        if near is None:
+            return None, outcome
+        end = grid.spec.center_of(*near)
+        route = self.router.route(grid, body, start, end, goal.yaw)
+        assert route is not None, "the end was chosen among reachable cells"
+        return route, outcome
+
+    def _detours(
+        self, grid: PlanningGrid, start: Pose2, max_expansions: int
+    ) -> DetourPlanner:
+        params = replace(self.params, max_expansions=max_expansions)
+        unseen = self.map.unseen(self.put_down_at or start)
+        return DetourPlanner(grid, self.map.body, params, self.router, unseen)
+
+
+def path_end_reach_m(params: PlannerParams) -> float:
+    """Return the largest distance from the goal at which a path may end.
+
+    Less than the tolerance, because the robot may stop before the path's end.
+    """
+    return max(
+        params.goal_tolerance_m - params.path_end_tolerance_m,
+        0.5 * params.goal_tolerance_m,
+    )
