@@ -11,13 +11,11 @@ it is complete.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from navette.errors import InvalidInputError, InvalidValueError
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
@@ -32,32 +30,25 @@ from navette.msgs.std_srvs.srv import (
     Trigger_Request,
     Trigger_Response,
 )
-from navette.navigation.grids import (
-    NO_DISCS,
-    HitPoints,
-    MovingDiscs,
-    discs_from_message,
-    grid_from_message,
-    window_from_message,
-)
-from navette.navigation.grids.checks import check_frame
-from navette.navigation.grids.zones import KeepOutZones
+from navette.navigation.planning.localization_check import LocalizationCheck
+from navette.navigation.planning.map_inputs import MapInputs
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
-from navette.navigation.planning.planning_grid import NO_HITS
-from navette.navigation.planning.received_map import MapPart, ReceivedMap
-from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
+from navette.navigation.planning.received_map import MapPart
+from navette.navigation.planning.reports import RobotMotion
+from navette.navigation.planning.servers.navigator_status import NavigatorStatus
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
 from navette.navigation.planning.servers.smoother_server import SmootherServer
+from navette.navigation.planning.step_runner import StepRunner
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.input_check import input_check
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
-from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.stage.status import status_output
 from navette.runtime.worker import Worker
 
 # Period of checking the age of the odometry.
@@ -70,17 +61,6 @@ _STATUS_DELAY_NS = 200_000_000
 _BLOCKED = "blocked"
 # Status of a controller whose robot does not move as commanded.
 _STALLED = "stalled"
-# Age of the moving obstacles from which they are obsolete.
-_MOVING_TIMEOUT_S = 0.5
-# Temporary failures; all others end the goal.
-_TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
-# After localization: the corrected pose and map follow on other topics.
-_RELOCATION_NS = 500_000_000
-# Status of a localization node → why the goal waits; of any other: it is localizing.
-_UNLOCATED: dict[str, Outcome | Phase | None] = {
-    "localized": None,
-    "lost": Outcome.LOST,
-}
 
 
 class PlannerNode(StageNode):
@@ -177,22 +157,15 @@ class PlannerNode(StageNode):
         super().__init__("planner", **kwargs)
         self._worker = Worker(self)
         self._tracker = self._new_tracker()
-        self._navigator = Navigator(self.params)
-        self._navigator.planner.warm_up()
-        self._stepping: Navigator | None = None  # copy that the worker steps
-        self._step_is_due = False
-        self._after_step: list[Callable[[], None]] = []
+        navigator = Navigator(self.params)
+        navigator.planner.warm_up()
+        self._runner = StepRunner(
+            navigator, self._worker, self._publish_path_and_status
+        )
         self._odometry_ns: int | None = None
-        self._unlocated: Outcome | Phase | None = None
-        self._relocated_ns: int | None = None
-        self._zones: KeepOutZones | None = None
-        self._map: ReceivedMap | None = None
-        self._moving = MovingDiscs(NO_DISCS, 0)
-        self._map_ns = 0
-        self._updated_ns: int | None = None  # stamp of the newest update
-        self._hits = HitPoints()
-        self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
-        self._logged = self._fault = ""
+        self._localization = LocalizationCheck()
+        self._space = MapInputs()
+        self._status = NavigatorStatus(self)
         self._path_ns = 0  # of the newest path
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
@@ -220,82 +193,50 @@ class PlannerNode(StageNode):
         if msg.message == Outcome.METHOD_FAILED and self._navigator.has_path:
             if path_age_ns < _STATUS_DELAY_NS:
                 return  # the status may be that of the previous path
-            self._drop_step()
+            self._runner.drop()
             self._navigator.fail(Outcome.METHOD_FAILED)
             self._publish_path_and_status()
         elif msg.message == _STALLED and self._navigator.has_path:
             self._navigator.note_stalled(self._now_ns)
             self.on_timer()
         elif msg.message == _BLOCKED and self._navigator.has_path:
-            self._when_stepped(lambda: self._navigator.note_blocked())
+            self._runner.change(lambda: self._navigator.note_blocked())
             self.on_timer()
 
     def on_moving(self, msg: ObstacleArray) -> None:
         """Store the moving obstacles for the next step."""
-        self._moving = discs_from_message(msg, self.params.map_frame)
+        self._space.receive_moving(msg, self.params.map_frame)
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map; a path that it blocks is replaced at once."""
-        check_frame("map", msg.header.frame_id, self.params.map_frame)
-        try:
-            occupancy, spec = grid_from_message(msg)
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-        stamp_ns, known = stamp_to_ns(msg.header.stamp), self._map
-        if known is not None and known.spec == spec and stamp_ns == self._updated_ns:
-            return  # the update with this stamp has arrived
-        self._map, self._map_ns = ReceivedMap(occupancy, spec), stamp_ns
-        self._apply_map()
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if self._space.receive_map(msg, stamp_ns, self.params.map_frame):
+            self._apply_map()
 
     def on_map_update(self, msg: OccupancyGridUpdate) -> None:
         """Change a part of the map; a path that it blocks is replaced at once."""
-        check_frame("map update", msg.header.frame_id, self.params.map_frame)
         stamp_ns = stamp_to_ns(msg.header.stamp)
-        if self._map is None or stamp_ns <= self._map_ns:
-            return  # the whole map is newer, or follows
-        try:
-            part = MapPart(*window_from_message(msg, self._map.spec))
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-        self._map_ns = self._updated_ns = stamp_ns
-        self._apply_map(part)
-
-    def on_keepout_zones(self, msg: OccupancyGrid) -> None:
-        """Plan around zones; a path through them is replaced at once."""
-        check_frame("keep-out zones", msg.header.frame_id, self.params.map_frame)
-        try:
-            self._zones = KeepOutZones(*grid_from_message(msg))
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-        zones = self._zones
-        self._when_stepped(lambda: self._navigator.keep_out(zones))
-        self.on_timer()
+        part = self._space.receive_update(msg, stamp_ns, self.params.map_frame)
+        if part is not None:
+            self._apply_map(part)
 
     def on_map_points(self, msg: PointCloud2) -> None:
         """Store where beams ended; usually it arrives before the map of its stamp."""
-        try:
-            stamp_ns = self._hits.receive(msg)
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
-        if self._map is not None and stamp_ns == self._map_ns:
+        if self._space.receive_points(msg):
             self._apply_map()
 
-    def _newest_hits(self) -> NDArray[np.float64]:
-        hits = self._hits.at(self._map_ns)
-        return NO_HITS if hits is None else hits
-
     def _apply_map(self, part: MapPart | None = None) -> None:
-        assert self._map is not None, "called with a map"
-        received, hits = self._map, self._newest_hits()
+        change = self._space.change(part)
+        # The worker may still be busy with a request, or a step that was dropped.
+        self._runner.change(
+            lambda: change.apply(self._navigator, is_shared=self._worker.is_busy)
+        )
+        self.on_timer()
 
-        def apply() -> None:
-            if self._worker.is_busy:  # with a request, or a step that was dropped
-                self._navigator.planner.map.detach()
-                received.share()
-            changed = received.update(part)
-            self._navigator.set_map(received.cells, received.spec, hits, changed)
-
-        self._when_stepped(apply)
+    def on_keepout_zones(self, msg: OccupancyGrid) -> None:
+        """Plan around zones; a path through them is replaced at once."""
+        zones = self._space.receive_zones(msg, self.params.map_frame)
+        self._runner.change(lambda: self._navigator.keep_out(zones))
         self.on_timer()
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -306,27 +247,18 @@ class PlannerNode(StageNode):
         self._odometry_ns = self._now_ns
         self._navigator.planner.put_down_at = self._tracker.first
         if self._tracker.jumps != jumps:
-            self._when_stepped(lambda: self._navigator.note_jump())
+            self._runner.change(lambda: self._navigator.note_jump())
             self.on_timer()
         robot = self._robot()
-        if robot is None or self._unlocated or self._stepping is not None:
+        if robot is None or self._localization.unlocated or self._runner.is_stepping:
             return
         if self._navigator.note(robot, self._now_ns):
             self._publish_path_and_status()
 
     def on_localization_status(self, msg: DiagnosticStatus) -> None:
         """Stop a robot that is lost; continue when it is localized again."""
-        before, found = (
-            self._unlocated,
-            _UNLOCATED.get(msg.message, Phase.LOCALIZING),
-        )
-        if found is None and before is not None:
-            if self._relocated_ns is None:
-                self._relocated_ns = self._now_ns + _RELOCATION_NS
-            return
-        self._unlocated, self._relocated_ns = found, None
-        if found is not before:
-            self._drop_step()
+        if self._localization.receive(msg.message, self._now_ns):
+            self._runner.drop()
             self.on_timer()
 
     def on_goal_point(self, msg: PointStamped) -> None:
@@ -358,7 +290,7 @@ class PlannerNode(StageNode):
             goal = Goal(msg.pose.position.x, msg.pose.position.y)
         else:
             return
-        self._drop_step()
+        self._runner.drop()
         outside = error.reason == "out_of_range"
         self._navigator.refuse_goal(
             goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
@@ -377,7 +309,7 @@ class PlannerNode(StageNode):
 
     def _end_goal(self) -> bool:
         """Cancel the goal and stop the robot; return whether there was one."""
-        self._drop_step()
+        self._runner.drop()
         canceled = self._navigator.cancel()
         self._publish_path_and_status()
         return canceled
@@ -391,7 +323,7 @@ class PlannerNode(StageNode):
         self, request: Trigger_Request, response: Trigger_Response
     ) -> Trigger_Response:
         """Plan around the place where the robot got stuck."""
-        self._drop_step()
+        self._runner.drop()
         response.success = self._navigator.avoid_place()
         found = "the place ahead is avoided" if response.success else "no such place"
         response.message = found
@@ -402,53 +334,28 @@ class PlannerNode(StageNode):
         commander = Commander.of(msg)
         masked = commander.masks(self.resolve_topic_name(topics.CMD_VEL_NAV.name))
         if masked and not self._navigator.is_paused:
-            self._drop_step()
+            self._runner.drop()
             self._navigator.pause(self._now_ns)
         elif self._navigator.is_paused and not masked:
-            self._drop_step()
+            self._runner.drop()
             self._navigator.resume(self._now_ns)
             self.on_timer()
         self._publish_path_and_status()
 
     def on_timer(self) -> None:
         """Step the navigator."""
-        if self._relocated_ns is not None and self._now_ns >= self._relocated_ns:
-            self._unlocated = self._relocated_ns = None
-        if self._stepping is not None:
-            self._step_is_due = True
+        self._localization.update(self._now_ns)
+        if self._runner.is_stepping:
+            self._runner.then(self.on_timer)
             return
-        moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
-        self._navigator.planner.map.set_moving(moving)
-        self._stepping = stepping = self._navigator.copy()
+        self._navigator.planner.map.set_moving(self._space.moving_at(self._now_ns))
         robot, now_ns, stale = self._robot(), self._now_ns, self._is_stale()
-        unlocated = self._unlocated
-        self._worker.run(
-            lambda: stepping.step(robot, now_ns, stale=stale, unlocated=unlocated),
-            lambda _: self._finish_step(stepping),
-            is_dropped=lambda: self._stepping is not stepping,
+        unlocated = self._localization.unlocated
+        self._runner.run(
+            lambda navigator: navigator.step(
+                robot, now_ns, stale=stale, unlocated=unlocated
+            )
         )
-
-    def _finish_step(self, stepped: Navigator) -> None:
-        self._navigator = stepped
-        self._drop_step()
-        self._publish_path_and_status()
-        if self._step_is_due:
-            self._step_is_due = False
-            self.on_timer()
-
-    def _drop_step(self) -> None:
-        """Leave the step that the worker computes, for a change that cannot wait."""
-        self._stepping = None
-        waiting, self._after_step = self._after_step, []
-        for change in waiting:
-            change()
-
-    def _when_stepped(self, change: Callable[[], None]) -> None:
-        """Change the navigator, after the step that the worker computes."""
-        if self._stepping is None:
-            change()
-        else:
-            self._after_step.append(change)
 
     def on_watch(self) -> None:
         """Stop the robot as soon as its odometry is stale."""
@@ -463,7 +370,7 @@ class PlannerNode(StageNode):
         if params.plan_period_s != old.plan_period_s:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(params.plan_period_s, self.on_timer)
-        self._drop_step()
+        self._runner.drop()
         self._navigator.configure(params)
 
     def on_time_jump(self) -> None:
@@ -471,19 +378,15 @@ class PlannerNode(StageNode):
 
         The map is kept until another arrives: it may be published only once.
         """
-        self._drop_step()
+        self._runner.drop()
         had_path = self._navigator.has_path
         self._tracker.reset()
         self._odometry_ns = None
         was_paused = self._navigator.is_paused
-        self._navigator = Navigator(self.params)
+        self._runner.navigator = Navigator(self.params)
         if was_paused:
             self._navigator.pause(self._now_ns)
-        if self._map is not None:
-            cells, spec = self._map.cells, self._map.spec
-            self._navigator.set_map(cells, spec, self._newest_hits())
-        if self._zones is not None:
-            self._navigator.keep_out(self._zones)
+        self._space.restore(self._navigator)
         if had_path:
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, empty)
@@ -493,6 +396,10 @@ class PlannerNode(StageNode):
         """End the worker, then destroy the node."""
         self._worker.close()
         super().destroy_node()
+
+    @property
+    def _navigator(self) -> Navigator:
+        return self._runner.navigator
 
     @property
     def _now_ns(self) -> int:
@@ -506,10 +413,14 @@ class PlannerNode(StageNode):
         return None if pose is None else RobotMotion(pose, *self._tracker.velocity)
 
     def _planner_with_map(self) -> Planner | None:
-        return None if self._map is None else self._navigator.planner
+        return self._navigator.planner if self._space.has_map else None
 
     def _fresh_pose(self) -> Pose2 | None:
-        return None if self._unlocated or self._is_stale() else self._tracker.latest
+        return (
+            None
+            if self._localization.unlocated or self._is_stale()
+            else self._tracker.latest
+        )
 
     def _is_stale(self) -> bool:
         if self._odometry_ns is None:
@@ -523,7 +434,7 @@ class PlannerNode(StageNode):
 
     def _set_goal(self, header: Header, goal: Goal) -> None:
         map_T_frame = self._frame_on_map(header.frame_id)
-        self._drop_step()
+        self._runner.drop()
         if map_T_frame is None:
             self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
             self.get_logger().error(
@@ -559,42 +470,7 @@ class PlannerNode(StageNode):
             self.hand_over(topics.PLAN.name, path)
 
     def _report(self, *, is_logged: bool = False) -> None:
-        """Publish the status; log it if it has changed and was not logged already."""
-        report = self._navigator.report
-        self._status.report(
-            report.message,
-            _level(report),
-            phase=report.state.value,
-            goal_id=report.goal_id,
-            goal_x=report.goal_x,
-            goal_y=report.goal_y,
-            distance_left_m=report.distance_left_m,
-            result=report.result,
-            plan=report.plan,
-            margin_m=report.margin_m,
-            replans=report.replans,
-        )
-        text = f"{report.message} {report.plan}"
-        if text != self._logged:
-            self._logged = text
-            if not is_logged:
-                self._log(report)
-
-    def _log(self, report: NavigatorReport) -> None:
-        logger = self.get_logger()
-        goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
-        if report.fault and report.fault != self._fault:
-            self._fault = report.fault
-            logger.error(f"{goal}: {report.message}: {report.fault}")
-        elif report.failed:
-            logger.warning(f"{goal}: {report.message}")
-        elif report.message == Phase.FOLLOWING:
-            near = "" if report.plan == Outcome.OK else f" ({report.plan})"
-            logger.info(f"{goal}: {report.distance_left_m:.1f} m to go{near}")
-        else:
-            logger.info(
-                f"{goal}: {report.message}" if report.goal_id else "no goal yet"
-            )
+        self._status.report(self._navigator.report, is_logged=is_logged)
 
 
 def _goal(msg: PoseStamped) -> Goal:
@@ -608,10 +484,3 @@ def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:
         return goal
     moved = map_T_frame @ Pose2(goal.x, goal.y, goal.yaw or 0.0)
     return Goal(moved.x, moved.y, None if goal.yaw is None else moved.yaw)
-
-
-def _level(report: NavigatorReport) -> bytes:
-    if not report.failed:
-        return StatusReporter.OK
-    mild = report.message in (*_TEMPORARY, Outcome.CANCELED)
-    return StatusReporter.WARN if mild else StatusReporter.ERROR
