@@ -30,7 +30,8 @@ WORLDS = ("rooms", "office")
 RIGHT_M, RIGHT_RAD = 0.3, math.radians(10.0)
 RESOLUTION_M = 0.05
 CRUISE_MPS, TURN_RADPS = 0.7, 1.2
-BODY_M = 0.4
+BODY_M, NARROW_M = 0.4, 0.28  # half widths that should and must be free
+KEPT_NS = 5_000_000_000
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class Outcome:
     state: str
     error_m: float
     since_s: float
+    driven_m: float
     cpu_share: float
 
 
@@ -80,31 +82,57 @@ def fill(cells: NDArray[np.int8], corners: NDArray[np.float64]) -> None:
 
 
 class Wanderer:
-    """Drives towards the widest open direction of a scan."""
+    """Drives to where a scan is open, and turns only where it cannot go on.
+
+    A direction is kept for some time: one chosen anew at every scan alternates between
+    two that are alike, and the robot stays where it is.
+    """
 
     def __init__(self) -> None:
-        self._heading = 0.0
+        self._target: float | None = None  # heading in the odometry's frame, rad
+        self._until_ns = 0
 
     def command(
-        self, angles: NDArray[np.float64], ranges: NDArray[np.float64]
+        self,
+        angles: NDArray[np.float64],
+        ranges: NDArray[np.float64],
+        yaw: float,
+        now_ns: int,
     ) -> tuple[float, float]:
         """Return speed (m/s) and turn rate (rad/s)."""
-        headings = np.radians(np.arange(-170, 171, 10))
-        free = np.array([open_m(angles, ranges, each) for each in headings])
+        if self._target is None or now_ns >= self._until_ns:
+            self._target = yaw + self._widest(angles, ranges)
+            self._until_ns = now_ns + KEPT_NS
+        off = angle_difference(self._target, yaw)
+        ahead = open_m(angles, ranges, 0.0, NARROW_M)
+        if abs(off) < 0.3 and ahead < 0.6:
+            self._until_ns = now_ns
+        turn = float(np.clip(2.0 * off, -TURN_RADPS, TURN_RADPS))
+        speed = CRUISE_MPS * min(1.0, max(0.0, ahead - 0.4) / 0.6)
+        return speed * max(0.0, math.cos(off)) ** 4, turn
+
+    def _widest(
+        self, angles: NDArray[np.float64], ranges: NDArray[np.float64]
+    ) -> float:
+        """Return the best direction, ahead before behind."""
+        headings = np.radians(np.arange(-170, 181, 10))
         kept = 1.0 - 0.5 * np.abs(headings) / math.pi
-        best = headings[int(np.argmax(np.minimum(free, 6.0) * kept))]
-        ahead = open_m(angles, ranges, 0.0)
-        turn = float(np.clip(2.0 * best, -TURN_RADPS, TURN_RADPS))
-        speed = CRUISE_MPS * min(1.0, max(0.0, ahead - 0.3) / 1.0)
-        return speed * max(0.0, math.cos(best)), turn
+        for half_m in (BODY_M, NARROW_M):
+            free = np.array([open_m(angles, ranges, each, half_m) for each in headings])
+            if free.max() > 1.0:
+                break
+        return float(headings[int(np.argmax(np.minimum(free, 6.0) * kept))])
 
 
 def open_m(
-    angles: NDArray[np.float64], ranges: NDArray[np.float64], heading: float
+    angles: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    heading: float,
+    half_m: float,
 ) -> float:
-    """Return how far a body can move in a direction."""
+    """Return how far a body of a half width can move in a direction."""
     along, across = ranges * np.cos(angles - heading), ranges * np.sin(angles - heading)
-    hits = (along > 0) & (np.abs(across) < BODY_M)
+    hits = (along > 0) & (np.abs(across) < half_m)
     return float(along[hits].min(initial=10.0))
 
 
@@ -122,7 +150,7 @@ def run(kind: str, world: int, seed: int, seconds: float) -> Outcome:
     odom_T_start = simulator.wheel_odometry().pose
     localizer = MapLocalizer(AmclParams(seed=seed), cells, spec)
     mount = simulator.lidars[0].mount.body_T_sensor.to_pose2()
-    wanderer, right_since, spent_s = Wanderer(), math.inf, 0.0
+    wanderer, right_since, spent_s, driven_m = Wanderer(), math.inf, 0.0, 0.0
     state, error_m = LocalizationState.LOCALIZING, math.inf
     for number in range(1, round(seconds * 1e9) // SCAN_NS + 1):
         simulator.advance_to(number * SCAN_NS)
@@ -137,7 +165,11 @@ def run(kind: str, world: int, seed: int, seconds: float) -> Outcome:
         began = time.process_time()
         found = localizer.step(ScanView(mount.apply(ends), odom, number * SCAN_NS))
         spent_s += time.process_time() - began
-        simulator.command(*wanderer.command(angles[hit], scan.ranges[hit]))
+        now_ns = number * SCAN_NS
+        simulator.command(
+            *wanderer.command(angles[hit], scan.ranges[hit], odom.yaw, now_ns)
+        )
+        driven_m += abs(simulator.motion().linear[0]) * SCAN_NS / 1e9
         state, true = found.state, simulator.pose().to_pose2()
         is_right = False
         if state is LocalizationState.LOCALIZED and found.map_T_odom is not None:
@@ -149,7 +181,13 @@ def run(kind: str, world: int, seed: int, seconds: float) -> Outcome:
         right_since = since if is_right else math.inf
     right = math.isfinite(right_since)
     return Outcome(
-        f"{kind}:{world}/{seed}", right, state, error_m, right_since, spent_s / seconds
+        f"{kind}:{world}/{seed}",
+        right,
+        str(state),
+        error_m,
+        right_since,
+        driven_m,
+        spent_s / seconds,
     )
 
 
@@ -174,12 +212,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--starts", type=int, default=100)
     parser.add_argument("--seconds", type=float, default=30.0)
-    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--worlds", type=int, default=10, help="of each kind")
+    parser.add_argument("--first-world", type=int, default=0)
     given = parser.parse_args()
     outcomes = []
     for index in range(given.first, given.first + given.starts):
         kind = WORLDS[index % len(WORLDS)]
-        outcome = run(kind, index // 2 % 10, index, given.seconds)
+        world = given.first_world + index // 2 % given.worlds
+        outcome = run(kind, world, index, given.seconds)
         outcomes.append(outcome)
         print(outcome, flush=True)
     times = [each.since_s for each in outcomes if each.right]
@@ -190,6 +231,7 @@ def main() -> None:
         "error_m": float(
             np.median([o.error_m for o in outcomes if o.right] or [math.nan])
         ),
+        "driven_m": float(np.median([each.driven_m for each in outcomes])),
         "cpu_share": float(np.mean([each.cpu_share for each in outcomes])),
     }
     print(json.dumps(summary))

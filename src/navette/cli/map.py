@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from navette.runtime import Node
 
 _SAVE = "nav2_msgs/srv/SaveMap"
+_SLAM_SAVER = "slam/save_map"
 _SAVE_S = 10.0  # a large map of another topic
 _LEAST_OCCUPIED = 65  # as map_server's occupied_thresh
 _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 1
@@ -55,11 +56,12 @@ def save(
 ) -> None:
     """Save the map of the running robot as FILE.yaml and an image.
 
-    The node that keeps the map writes the files, on its machine.
+    The node that keeps the map writes the files, on its machine. With SLAM that is
+    its map, and FILE.slam to continue it.
     """
     stem = file.with_suffix("") if file.suffix == ".yaml" else file
     with connect() as node:
-        service = _saver(node)
+        service = _saver(node, topic)
         if service is None:
             fail(
                 "no node has the service map_saver/save_map: is a robot with "
@@ -76,7 +78,8 @@ def save(
         fail(answer.reason)
     if not answer.response.result:
         fail(f"the map was not saved: the log of {service} has the reason")
-    show(f"saved {stem}.yaml")
+    graph = f" and {stem}.slam" if service.endswith(_SLAM_SAVER) else ""
+    show(f"saved {stem}.yaml{graph}")
 
 
 @map_.command("show")
@@ -200,8 +203,11 @@ def _values(occupancy: "OccupancyMap") -> dict[str, Any]:
     }
 
 
-def _saver(node: "Node") -> str | None:
-    """Return the full name of the service that saves maps."""
+def _saver(node: "Node", topic: str) -> str | None:
+    """Return the full name of the service that saves the map of a topic.
+
+    Without a topic that of a SLAM comes first: the map of map_memory is made from it.
+    """
     from navette.transports import EndpointKind
 
     found = sorted(
@@ -209,4 +215,7 @@ def _saver(node: "Node") -> str | None:
         for each in service_endpoints(node, kind=EndpointKind.SERVICE)
         if each.type_name == _SAVE
     )
-    return found[0] if found else None
+    of_slam = [each for each in found if each.endswith(_SLAM_SAVER)]
+    others = [each for each in found if each not in of_slam]
+    order = others if topic else [*of_slam, *others]
+    return order[0] if order else None

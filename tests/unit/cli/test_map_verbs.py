@@ -16,8 +16,10 @@ from navette.geometry.map_files import (
     read_occupancy_map,
     write_occupancy_map,
 )
+from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.mapping.node import MapMemoryNode
-from navette.runtime import Parameter
+from navette.navigation.slam.node import SlamNode
+from navette.runtime import Node, Parameter
 
 # Row 0 at the bottom: a wall below, an unknown margin on the left.
 CELLS = np.array(
@@ -51,6 +53,26 @@ def test_the_map_of_a_robot_is_saved(here: World, file: Path, tmp_path: Path) ->
     again = read_occupancy_map(to)
     assert again.origin == Pose2(-1.0, 2.0, 0.0)
     np.testing.assert_array_equal(again.cells, CELLS)
+
+
+def test_the_map_of_slam_is_saved_first(here: World, tmp_path: Path) -> None:
+    """SLAM's map with its scans; with a topic that of map_memory."""
+    here.graph.add(MapMemoryNode(context=here.context))
+    here.graph.add(SlamNode(context=here.context))
+    to = tmp_path / "office"
+    scan = LaserScan(angle_min=-3.0, angle_increment=0.1, range_max=9.0)
+    scan.header.frame_id, scan.ranges = "base_link", np.full(60, 3.0, np.float32)
+    lidar = Node("lidar", context=here.context).create_publisher(LaserScan, "/lidar", 1)
+    for second in range(1, 4):
+        scan.header.stamp.sec = second
+        lidar.publish(scan)
+        here.graph.run_for(0.1)
+    printed = here.read("map", "save", str(to))
+    assert printed == f"saved {to}.yaml and {to}.slam\n"
+    assert to.with_suffix(".slam").stat().st_size > 0
+    other = tmp_path / "other"
+    printed = here.read("map", "save", str(other), "--topic", "/map")
+    assert printed == f"saved {other}.yaml\n"
 
 
 def test_saving_without_a_robot_fails(here: World, tmp_path: Path) -> None:

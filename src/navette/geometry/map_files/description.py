@@ -1,6 +1,7 @@
 """The YAML file of a map: image, resolution, origin, thresholds, mode."""
 
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,10 +66,10 @@ def read_description(path: Path) -> MapDescription:
         )
     return MapDescription(
         path=path,
-        image=path.parent / image,
+        image=path.parent / os.path.expanduser(image),
         resolution=resolution,
         origin=Pose2(x, y, yaw),
-        negate=bool(values.get("negate", 0)),
+        negate=_flag(path, "negate", values.get("negate", 0)),
         free_threshold=free,
         occupied_threshold=occupied,
         mode=mode,
@@ -86,6 +87,12 @@ def _mapping(path: Path) -> dict[Any, Any]:
             path, "a map file must be a mapping with image, resolution, …"
         )
     return values
+
+
+def _flag(path: Path, key: str, value: Any) -> bool:
+    if value not in (0, 1):  # True and False are equal to these
+        raise FileFormatError(path, f"{key!r} is {value!r}; expected 0 or 1")
+    return bool(value)
 
 
 def _number(path: Path, key: str, value: Any) -> float:

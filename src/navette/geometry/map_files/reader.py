@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from navette.geometry.map_files.description import MapDescription, read_descript
 
 MAX_PIXELS = 16_000_000
 _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 100
+_FORMATS = ("PPM", "PNG", "BMP")  # Pillow's names; PPM includes PGM and PBM
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,29 +43,31 @@ def read_occupancy_map(path: Path) -> OccupancyMap:
 def read_cells(described: MapDescription) -> NDArray[np.int8]:
     """Return the cells (H, W) of a map, row 0 at the bottom.
 
-    A pixel p of 0 … 255 has the occupancy 1 − p / 255, with ``negate`` p / 255.
-    ``trinary``: from ``occupied_thresh`` on occupied, up to ``free_thresh`` free,
-    unknown in between. ``scale``: in between 0 … 100. ``raw``: the pixel's value; above
-    100 unknown. Transparent pixels are unknown, except in ``raw`` mode.
+    A pixel p of 0 … 1, the mean of its colours, has the occupancy 1 − p, with
+    ``negate`` p. ``trinary``: from ``occupied_thresh`` on occupied, up to
+    ``free_thresh`` free, unknown in between. ``scale``: in between 0 … 100. ``raw``:
+    255 p is the cell; above 100 unknown. Transparent pixels are unknown, except in
+    ``raw`` mode.
 
     Raises:
         FileFormatError: the image is invalid, missing or too large.
     """
-    grey, alpha = _pixels(described)
-    cells = _table(described)[grey]
+    grey, white, alpha = _pixels(described)
+    cells = _table(described, white)[grey]
     if alpha is not None and described.mode != "raw":
         cells[alpha < 255] = _UNKNOWN
     return np.ascontiguousarray(np.flipud(cells))
 
 
-def _table(described: MapDescription) -> NDArray[np.int8]:
-    """Return (256,) the cell of each grey value."""
-    grey = np.arange(256)
+def _table(described: MapDescription, white: int) -> NDArray[np.int8]:
+    """Return (white + 1,) the cell of each grey value 0 … ``white``."""
+    shade = np.arange(white + 1) / white
     if described.mode == "raw":
+        grey = np.rint(255 * shade)
         return np.where(grey > _OCCUPIED, _UNKNOWN, grey).astype(np.int8)
-    share = grey / 255.0 if described.negate else 1.0 - grey / 255.0
+    share = shade if described.negate else 1.0 - shade
     free, occupied = described.free_threshold, described.occupied_threshold
-    cells = np.full(256, _UNKNOWN, np.int8)
+    cells = np.full(white + 1, _UNKNOWN, np.int8)
     if described.mode == "scale":
         cells[:] = np.rint(np.clip((share - free) / (occupied - free), 0, 1) * 100)
     cells[share >= occupied] = _OCCUPIED
@@ -73,20 +77,33 @@ def _table(described: MapDescription) -> NDArray[np.int8]:
 
 def _pixels(
     described: MapDescription,
-) -> tuple[NDArray[np.uint8], NDArray[np.uint8] | None]:
-    """Return grey values and opacities (H, W), 0 … 255; None: all opaque."""
+) -> tuple[NDArray[np.integer[Any]], int, NDArray[np.uint8] | None]:
+    """Return grey values (H, W), that of white, and opacities (H, W), 0 … 255.
+
+    The opacities are None if all pixels are opaque.
+    """
     try:
-        with Image.open(described.image, formats=("PPM", "PNG", "BMP")) as image:
+        with Image.open(described.image, formats=_FORMATS) as image:
             if image.width * image.height > MAX_PIXELS:
                 raise FileFormatError(
                     described.path,
                     f"image of {image.width} x {image.height} pixels; "
                     f"at most {MAX_PIXELS}",
                 )
-            grey = np.asarray(image.convert("L"))
+            if image.mode.startswith("I"):  # Pillow's modes of 16-bit images
+                return np.asarray(image).astype(np.uint16), 0xFFFF, None
             alpha = None
             if image.has_transparency_data:
-                alpha = np.asarray(image.convert("LA"))[:, :, 1]
+                alpha = np.asarray(image.convert("RGBA"))[:, :, 3]
+            if image.mode in ("1", "L", "LA"):
+                return np.asarray(image.convert("L")), 0xFF, alpha
+            colours = np.asarray(image.convert("RGB"))
+            return colours.sum(axis=2, dtype=np.uint16), 3 * 0xFF, alpha
+    except FileNotFoundError:
+        raise FileFormatError(
+            described.path,
+            f"image {str(described.image)!r} cannot be read: no such file",
+        ) from None
     except (
         OSError,
         ValueError,
@@ -96,6 +113,6 @@ def _pixels(
     ) as error:
         name = described.image.name
         raise FileFormatError(
-            described.path, f"image {name!r} cannot be read: {error}"
+            described.path,
+            f"image {name!r} cannot be read as PGM, PNG or BMP: {error}",
         ) from None
-    return grey, alpha

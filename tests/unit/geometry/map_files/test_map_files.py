@@ -1,5 +1,6 @@
 """Reading and writing of map_server's maps."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,97 @@ def test_transparent_pixels_are_unknown(tmp_path: Path) -> None:
     pixels = np.array([[[0, 255], [0, 0], [255, 255]]])
     path = described(tmp_path, pixels)
     assert read_occupancy_map(path).cells.tolist() == [[100, -1, 0]]
+
+
+#: Grey values of an image, top row first, and its cells in three modes.
+GREY = np.array([[0, 205, 254], [100, 128, 255]], np.uint8)
+CELLS_OF_GREY = {
+    "trinary": [[-1, -1, 0], [100, -1, 0]],
+    "scale": [[91, 67, 0], [100, 0, 0]],
+    "raw": [[100, -1, -1], [0, -1, -1]],
+}
+
+
+def wide_png(path: Path) -> None:
+    Image.fromarray(GREY.astype(np.uint16) * 257).save(path)
+
+
+def wide_pgm(path: Path) -> None:
+    pixels = (GREY.astype(">u2") * 257).tobytes()
+    path.write_bytes(b"P5\n# two bytes a pixel\n3 2\n65535\n" + pixels)
+
+
+def text_pgm(path: Path) -> None:
+    path.write_text(f"P2 # as text\n3 2\n255\n{' '.join(map(str, GREY.ravel()))}\n")
+
+
+def commented_pgm(path: Path) -> None:
+    path.write_bytes(b"P5 # map_saver\n# 0.050 m/pix\n3 2\n#\n255\n" + GREY.tobytes())
+
+
+def colours_png(path: Path) -> None:
+    Image.fromarray(np.dstack([GREY] * 3)).save(path)
+
+
+def palette_png(path: Path) -> None:
+    Image.fromarray(GREY).convert("P").save(path)
+
+
+@pytest.mark.parametrize("mode", CELLS_OF_GREY)
+@pytest.mark.parametrize(
+    "write", [wide_png, wide_pgm, text_pgm, commented_pgm, colours_png, palette_png]
+)
+def test_kinds_of_images(
+    tmp_path: Path, write: Callable[[Path], None], mode: str
+) -> None:
+    write(tmp_path / "map.png")
+    path = tmp_path / "map.yaml"
+    path.write_text(
+        f"image: map.png\nmode: {mode}\nresolution: 0.05\norigin: [0, 0, 0]\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    assert read_occupancy_map(path).cells.tolist() == CELLS_OF_GREY[mode]
+
+
+def test_the_mean_of_the_colours_counts(tmp_path: Path) -> None:
+    """As in map_server: a zone painted in a pure colour is occupied."""
+    pixels = np.array([[[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]])
+    path = described(tmp_path, pixels)
+    assert read_occupancy_map(path).cells.tolist() == [[100, 100, 100, 0]]
+
+
+@pytest.mark.parametrize("place", ["images/map.png", "../map.png", "absolute", "home"])
+def test_the_image_lies_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    folder = tmp_path / "maps"
+    (folder / "images").mkdir(parents=True)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    named = {"absolute": str(tmp_path / "map.png"), "home": "~/map.png"}
+    image = named.get(place, place)
+    target = folder / image if place in (image, "absolute") else tmp_path / "map.png"
+    Image.fromarray(GREY).save(target)
+    path = described(folder, GREY, image=image)
+    assert read_occupancy_map(path).cells.tolist() == CELLS_OF_GREY["trinary"]
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"negate": "maybe"}, "'negate' is 'maybe'; expected 0 or 1"),
+        ({"negate": 2}, "expected 0 or 1"),
+        ({"image": "gone.png"}, r"gone\.png' cannot be read: no such file"),
+        ({"origin": [1.0, 2.0]}, r"expected \[x, y, yaw\]"),
+        ({"mode": "grey"}, "trinary, scale, raw"),
+        ({"occupied_thresh": 0.1, "free_thresh": 0.2}, "free_thresh < occupied"),
+    ],
+)
+def test_invalid_values_are_named(
+    tmp_path: Path, values: dict[str, object], text: str
+) -> None:
+    path = described(tmp_path, GREY, **values)
+    with pytest.raises(FileFormatError, match=text):
+        read_occupancy_map(path)
 
 
 @pytest.mark.parametrize("image_format", ["pgm", "png", "bmp"])

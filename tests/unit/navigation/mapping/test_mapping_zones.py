@@ -48,7 +48,7 @@ def test_values_of_a_mask_are_scaled() -> None:
     assert mask.value_at(1.5, 0.5) == 30.0
     assert mask.value_at(2.5, 0.5) is None
     assert mask.value_at(9.0, 0.5) is None
-    keep = FilterMask(np.array([[0, 99, -1, 50]], np.int8), GridSpec(1.0, 4, 1))
+    keep = FilterMask(np.array([[0, 99, -1, 50]], np.int8), GridSpec(1.0, 4, 1), 7.0)
     assert keep.keep_out(99).tolist() == [[0, 100, 0, 0]]
     assert keep.keep_out(50).tolist() == [[0, 100, 0, 100]]
 
@@ -102,11 +102,57 @@ def test_masks_of_other_nodes_are_used(graph: GraphHarness, tmp_path: Path) -> N
     grid.info.resolution, grid.info.width, grid.info.height = 1.0, 2, 1
     grid.data = np.array([100, 0], np.int8)
     mask.publish(grid)
-    info.publish(
-        CostmapFilterInfo(type=0, filter_mask_topic="/my_mask", multiplier=1.0)
+    for multiplier in (1.0, 0.0):  # the scale does not count for type 0
+        info.publish(
+            CostmapFilterInfo(filter_mask_topic="/my_mask", multiplier=multiplier)
+        )
+        graph.run_for(0.2)
+        assert grid_from_message(zones[-1])[0].tolist() == [[100, 0]]
+    assert len(zones) == 2
+
+
+@pytest.mark.parametrize(
+    ("kind", "base", "multiplier", "limits"),
+    [
+        (1, 100.0, -1.0, [40.0, 0.0, 1.0, 0.0]),
+        (2, 0.0, 0.01, [0.6, 0.0, 0.99, 0.0]),
+        (2, 1.0, -0.01, [0.4, 0.0, 0.01, 0.0]),
+        (1, 0.0, 0.0, [0.01, 0.0, 0.01, 0.0]),  # 0 would be no limit
+    ],
+)
+def test_speed_limits_by_type_and_scale(
+    graph: GraphHarness,
+    kind: int,
+    base: float,
+    multiplier: float,
+    limits: list[float],
+) -> None:
+    """A cell of 0 has no limit, as in Nav2; neither has a place outside the mask."""
+    graph.add(ZonesNode(context=graph.context))
+    found: list[SpeedLimit] = []
+    graph.node.create_subscription(SpeedLimit, "/speed_limit", found.append, 10)
+    mask = graph.node.create_publisher(OccupancyGrid, "/my_mask", LATCHED)
+    info = graph.node.create_publisher(
+        CostmapFilterInfo, "/speed_costmap_filter_info", LATCHED
     )
-    graph.run_for(0.2)
-    assert grid_from_message(zones[-1])[0].tolist() == [[100, 0]]
+    grid = OccupancyGrid()
+    grid.header.frame_id = "map"
+    grid.info.resolution, grid.info.width, grid.info.height = 1.0, 3, 1
+    grid.info.origin.position.y = -0.5
+    grid.data = np.array([60, 0, 99], np.int8)
+    mask.publish(grid)
+    info.publish(
+        CostmapFilterInfo(
+            type=kind, filter_mask_topic="/my_mask", base=base, multiplier=multiplier
+        )
+    )
+    publisher = graph.node.create_publisher(Odometry, "/odom/filtered", 10)
+    for second, x in enumerate((0.5, 1.5, 2.5, 9.0), 1):
+        graph.run_for(0.1)
+        publisher.publish(odometry(x, second))
+    graph.run_for(0.1)
+    assert [each.speed_limit for each in found] == pytest.approx(limits, rel=1e-5)
+    assert {each.percentage for each in found} == {kind == 1}
 
 
 @pytest.mark.parametrize("topic", ["", "not a name", "/odom/filtered"])

@@ -25,7 +25,7 @@ from navette.runtime.exceptions import InvalidTopicNameException
 from navette.runtime.node import Node
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
 
-_SAVE_TIMEOUT_S = 2.0  # for the message of another topic
+_SAVE_TIMEOUT_S = 6.0  # for the message of another topic; slam publishes every 5 s
 _FREE_THRESHOLD, _OCCUPIED_THRESHOLD = 0.25, 0.65  # of map_saver
 
 

@@ -10,7 +10,7 @@ from navette.navigation.grids import FREE, LETHAL, GridSpec
 
 @dataclass(frozen=True, eq=False)
 class FilterMask:
-    """A mask; the value of a cell is ``base + multiplier · cell``.
+    """A mask; a speed limit is ``base + multiplier · cell``.
 
     Attributes:
         cells: (H, W) 0 … 100; -1 has no value.
@@ -23,15 +23,20 @@ class FilterMask:
     base: float = 0.0
     multiplier: float = 1.0
 
+    def cell_at(self, x: float, y: float) -> int:
+        """Return the cell at a point of the map (m); -1 outside the mask."""
+        row, column = self.spec.cell_of(x, y)
+        inside = self.spec.contains(row, column)
+        return int(self.cells[row, column]) if inside else -1
+
     def value_at(self, x: float, y: float) -> float | None:
         """Return the value at a point of the map (m); None outside, or without one."""
-        row, column = self.spec.cell_of(x, y)
-        if not self.spec.contains(row, column) or self.cells[row, column] < 0:
-            return None
-        return self.base + self.multiplier * float(self.cells[row, column])
+        cell = self.cell_at(x, y)
+        return None if cell < 0 else self.base + self.multiplier * cell
 
     def keep_out(self, lethal_value: int) -> NDArray[np.int8]:
-        """Return cells (H, W): 100 where the value is that of a zone, else 0."""
-        values = self.base + self.multiplier * self.cells.astype(np.float64)
-        zones = (self.cells >= 0) & (values >= lethal_value)
-        return np.where(zones, LETHAL, FREE).astype(np.int8)
+        """Return cells (H, W): 100 from a value of the mask on, else 0.
+
+        Base and multiplier do not count, as in Nav2's KeepoutFilter.
+        """
+        return np.where(self.cells >= lethal_value, LETHAL, FREE).astype(np.int8)

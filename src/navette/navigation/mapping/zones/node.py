@@ -86,6 +86,11 @@ class ZonesNode(StageNode):
         """Subscribe to the mask of keep-out zones."""
         if msg.type != _KEEP_OUT:
             raise InvalidInputError("wrong_type", f"type {msg.type}; expected 0")
+        if (msg.base, msg.multiplier) != (0.0, 1.0):
+            self.get_logger().warning(
+                f"keep-out zones: base {msg.base:g} and multiplier {msg.multiplier:g} "
+                "are not used; expected 0 and 1"
+            )
         self._subscribe_to_mask(msg, self._on_keepout_mask)
 
     def on_speed_info(self, msg: CostmapFilterInfo) -> None:
@@ -100,10 +105,7 @@ class ZonesNode(StageNode):
             return
         pose = self._tracker.latest
         assert pose is not None, "the tracker accepted the odometry"
-        value = self._speeds.value_at(pose.x, pose.y)
-        limit = _NO_LIMIT if value is None else max(_LEAST_LIMIT, value)
-        if self._in_percent and limit >= 100.0:
-            limit = _NO_LIMIT
+        limit = self._limit_at(self._speeds, pose.x, pose.y)
         if limit != self._limit:
             self._limit = limit
             frame = header(self._now_ns(), self.params.map_frame)
@@ -115,6 +117,15 @@ class ZonesNode(StageNode):
     def on_time_jump(self) -> None:
         """Drop the pose."""
         self._tracker.reset()
+
+    def _limit_at(self, mask: FilterMask, x: float, y: float) -> float:
+        """Return the limit at a point; as in Nav2, a cell of 0 has none."""
+        value = mask.value_at(x, y)
+        if value is None or mask.cell_at(x, y) == 0:
+            return _NO_LIMIT
+        if self._in_percent and value >= 100.0:
+            return _NO_LIMIT
+        return max(_LEAST_LIMIT, value)
 
     def _serve(
         self,
