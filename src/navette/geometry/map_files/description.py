@@ -1,7 +1,6 @@
 """The YAML file of a map: image, resolution, origin, thresholds, mode."""
 
 import math
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,6 +45,7 @@ def read_description(path: Path) -> MapDescription:
     image = values.get("image")
     if not isinstance(image, str) or not image:
         raise FileFormatError(path, "'image' must name a file")
+    file = Path(image)
     origin = values.get("origin", [0.0, 0.0, 0.0])
     if not isinstance(origin, list) or len(origin) != 3:
         raise FileFormatError(path, f"'origin' is {origin!r}; expected [x, y, yaw]")
@@ -66,7 +66,7 @@ def read_description(path: Path) -> MapDescription:
         )
     return MapDescription(
         path=path,
-        image=path.parent / os.path.expanduser(image),
+        image=path.parent / (file.expanduser() if image.startswith("~/") else file),
         resolution=resolution,
         origin=Pose2(x, y, yaw),
         negate=_flag(path, "negate", values.get("negate", 0)),
