@@ -82,9 +82,9 @@ def fill(cells: NDArray[np.int8], corners: NDArray[np.float64]) -> None:
 
 
 class Wanderer:
-    """Drives to where a scan is open, and turns only where it cannot go on.
+    """Drives to where a scan is open, and turns only where the path ends.
 
-    A direction is kept for some time: one chosen anew at every scan alternates between
+    A direction is kept for some time: one chosen at every scan alternates between
     two that are alike, and the robot stays where it is.
     """
 
