@@ -9,7 +9,7 @@ import argparse
 import functools
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,9 @@ from navette.runtime.lockstep import Coordinator
 from navette.runtime.overrides import ParameterOverrides
 
 if TYPE_CHECKING:
+    from navette.geometry import Pose2
     from navette.navigation.stack.scene import ResolvedScene
+    from navette.sim.params import SimParams
 
 
 def _program(main: Callable[[], None]) -> Callable[[], None]:
@@ -46,20 +48,17 @@ def sim() -> None:
         "sim", "A robot in a world: subscribes to /cmd_vel, publishes sensors."
     )
     _add_robot(parser)
-    parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
+    _add_start(parser)
     parser.add_argument(
         "--speed", type=float, metavar="FACTOR", help="limit as a multiple of real time"
     )
     _add_lockstep(parser)
     given = _parse(parser)
-    from navette.geometry import Pose2
     from navette.sim.node import SimNode
 
-    x, y, yaw_deg = given.start or (0.0, 0.0, 0.0)
-    start = Pose2(x, y, math.radians(yaw_deg)) if given.start else None
     resolved = _resolve(given)
     _run(
-        lambda context: SimNode(resolved.scene, start=start, context=context),
+        lambda context: SimNode(resolved.scene, start=given.start, context=context),
         _profile(resolved, "sim"),
         _clock_of_sim(given),
         resolved=resolved,
@@ -101,7 +100,29 @@ def ekf() -> None:
     if given.localization is None:
         _run(lambda context: EkfNode(context=context), ParameterOverrides())
     else:
-        _run_localization("ekf", EkfNode, given, given.localization)
+        sim = _simulated(given, given.localization)
+        _run_localization(given, sim, [("ekf", EkfNode)], None)
+
+
+@_program
+def localization() -> None:
+    """Run the nodes that locate the simulated robot."""
+    from navette.navigation.stack.localization import localization_nodes
+
+    text = "the nodes of --localization (localizer, ekf, slam, amcl), in one process"
+    parser = _locating_parser("localization", text)
+    parser.add_argument(
+        "--localization",
+        metavar="SOURCE",
+        default="truth",
+        help="as for navette sim: truth, odometry, slam or amcl, with +SENSOR "
+        "(default: %(default)s)",
+    )
+    given = _parse(parser)
+    sim = _simulated(given, given.localization)
+    model = _resolve(given).scene.robot
+    start = given.start or (model.world_T_model.to_pose2() if model else None)
+    _run_localization(given, sim, localization_nodes(sim), start)
 
 
 @_program
@@ -118,7 +139,9 @@ def amcl() -> None:
     from navette.navigation.localization.amcl.node import AmclNode
 
     text = "/static_map, /lidar, /odom/filtered → /tf (map → odom), /amcl_pose"
-    _run_localization("amcl", AmclNode, _parse_localization("amcl", text), "amcl")
+    given = _parse(_locating_parser("amcl", text))
+    sim = _simulated(given, "amcl")
+    _run_localization(given, sim, [("amcl", AmclNode)], given.start)
 
 
 @_program
@@ -127,7 +150,9 @@ def slam() -> None:
     from navette.navigation.slam.node import SlamNode
 
     text = "/lidar, /odom/filtered → /tf (map → odom), /pose, /slam/map"
-    _run_localization("slam", SlamNode, _parse_localization("slam", text), "slam")
+    given = _parse(_locating_parser("slam", text))
+    sim = _simulated(given, "slam")
+    _run_localization(given, sim, [("slam", SlamNode)], given.start)
 
 
 @_program
@@ -320,39 +345,57 @@ def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
     )
 
 
-def _parse_localization(name: str, text: str) -> Any:
+def _locating_parser(name: str, text: str) -> argparse.ArgumentParser:
     parser = _parser(name, text)
     _add_robot(parser)
-    parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
-    return _parse(parser)
+    _add_start(parser)
+    return parser
 
 
-def _run_localization(
-    name: str, node_class: Callable[..., Node], given: Any, localization: str
-) -> None:
-    """Run a node that locates the robot, with the frames of the robot."""
-    from navette.geometry import Pose2
-    from navette.navigation.stack.localization_params import localization_parameters
+def _simulated(given: Any, localization: str) -> "SimParams":
+    """Return the parameters of the simulated robot: its frames, and the source."""
     from navette.sim.params import SimParams
 
-    resolved = _resolve(given)
-    of_sim = _profile(resolved, "sim").for_node("/sim")
+    of_sim = _profile(_resolve(given), "sim").for_node("/sim")
     frames = {
         frame: of_sim[frame].value
         for frame in ("map_frame", "odom_frame", "base_frame")
         if frame in of_sim
     }
-    given_start = getattr(given, "start", None)
-    x, y, yaw_deg = given_start or (0.0, 0.0, 0.0)
-    start = Pose2(x, y, math.radians(yaw_deg))
-    sim = SimParams(localization=localization, **frames)
-    own = localization_parameters(sim, start, resolved.scene.origin)[name]
-    if given_start is None:
-        own = {key: v for key, v in own.items() if "initial_pose" not in key}
+    return SimParams(localization=localization, **frames)
+
+
+def _run_localization(
+    given: Any,
+    sim: "SimParams",
+    nodes: Sequence[tuple[str, Callable[..., Node]]],
+    start: "Pose2 | None",
+) -> None:
+    """Run nodes that locate the robot, with the frames of the robot.
+
+    Args:
+        start: pose of the robot at the start; None: not known.
+    """
+    from navette.geometry import Pose2
+    from navette.navigation.stack.localization_params import localization_parameters
+
+    resolved = _resolve(given)
+    of_nodes = localization_parameters(sim, start or Pose2(), resolved.scene.origin)
     profile = ParameterOverrides()
-    profile.add("/**", own, "frames of the robot")
-    profile.sets += _profile(resolved, name).sets
-    _run(lambda context: node_class(context=context), profile, resolved=resolved)
+    for name, _ in nodes:
+        own = of_nodes.get(name, {})
+        if start is None:
+            own = {key: v for key, v in own.items() if "initial_pose" not in key}
+        # A single node may be given any name.
+        target = "/**" if len(nodes) == 1 else f"/{name}"
+        profile.add(target, own, "frames of the robot")
+        profile.sets += _profile(resolved, name, target).sets
+
+    def make(context: Context) -> Node:
+        made = [node_class(context=context) for _, node_class in nodes]
+        return made[-1]
+
+    _run(make, profile, resolved=resolved)
 
 
 def _parser(name: str, text: str) -> argparse.ArgumentParser:
@@ -380,8 +423,36 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="TYPE[@PLACE]",
-        help="a sensor on the robot, as for navette sim",
+        help="a sensor on the robot, as for navette sim; several: repeated, or with "
+        "commas between",
     )
+
+
+def _add_start(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--start",
+        nargs=3,
+        type=float,
+        action=_PoseAction,
+        metavar=("X", "Y", "YAW_DEG"),
+        help="pose of the robot at the start",
+    )
+
+
+class _PoseAction(argparse.Action):
+    """Store x, y (m) and yaw (degrees) as a pose."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        from navette.geometry import Pose2
+
+        x, y, yaw_deg = values
+        setattr(namespace, self.dest, Pose2(x, y, math.radians(yaw_deg)))
 
 
 def _add_lockstep(parser: argparse.ArgumentParser) -> None:
@@ -429,23 +500,27 @@ def _resolve(given: Any) -> "ResolvedScene":
         RunOptions(
             world=given.world,
             robot=given.robot or None,
-            sensors=tuple(given.sensor),
+            sensors=tuple(filter(None, ",".join(given.sensor).split(","))),
         )
     )
 
 
-def _profile(resolved: "ResolvedScene", name: str) -> ParameterOverrides:
+def _profile(
+    resolved: "ResolvedScene", name: str, target: str = "/**"
+) -> ParameterOverrides:
     """Return the robot's parameters of this node."""
     of_all = ParameterOverrides()
     resolved.override_parameters(of_all)
-    return _under_any_name(of_all, name)
+    return _under_any_name(of_all, name, target)
 
 
-def _under_any_name(of_all: ParameterOverrides, name: str) -> ParameterOverrides:
+def _under_any_name(
+    of_all: ParameterOverrides, name: str, target: str = "/**"
+) -> ParameterOverrides:
     """Return the parameters of this node for any name it may be given."""
     own = ParameterOverrides()
     for parameter, override in of_all.for_node(f"/{name}").items():
-        own.add("/**", {parameter: override.value}, override.origin)
+        own.add(target, {parameter: override.value}, override.origin)
     return own
 
 
@@ -473,7 +548,9 @@ def _run(
         if resolved is not None:
             resolved.rename_topics(context)
         node = make(context)
-        context.overrides.check_used_by([node])
+        context.overrides.check_used_by(context.nodes)
+        for other in context.nodes:
+            runtime.get_global_executor(context).add_node(other)
         runtime.spin(node)
     except KeyboardInterrupt:
         pass  # the usual end

@@ -17,6 +17,7 @@ _STAGES = (
     "sim",
     "odom_integrator",
     "ekf",
+    "localization",
     "localizer",
     "amcl",
     "slam",

@@ -252,17 +252,35 @@ def test_the_built_in_services(tmp_path: Path) -> None:
     assert set(specs) == {"sim", "robot", "viewer"}
     names = [process.name for process in specs["robot"].processes]
     assert names == [
-        "localizer",
+        "localization",
         "costmap",
+        "tracking",
         "map_memory",
+        "zones",
         "planner",
         "control",
         "behaviors",
+        "reflex",
         "arbiter",
         "missions",
         "lifecycle_manager",
     ]
     for process in specs["robot"].processes:
-        assert process.argv[-3:] == ("--ros-args", "-p", "use_sim_time:=true")
+        assert "use_sim_time:=true" in process.argv
         if process.name != "lifecycle_manager":
             assert process.argv[process.argv.index("--robot") + 1] == "husky"
+
+
+def test_the_switch_of_localization_reaches_simulator_and_localization(
+    tmp_path: Path,
+) -> None:
+    given = {"localization": "odometry+imu+gnss", "map": "hall.yaml"}
+    content = read_config(Project(tmp_path), given)
+    lines = {
+        process.name: " ".join(process.argv)
+        for spec in content.specs(content.names)
+        for process in spec.processes
+    }
+    assert '-p localization:="odometry+imu+gnss"' in lines["sim"]
+    assert lines["localization"].count("--localization odometry+imu+gnss") == 1
+    assert '-p map_file:="hall.yaml"' in lines["map_memory"]

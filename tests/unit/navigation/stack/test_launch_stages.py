@@ -1,5 +1,6 @@
 """Each stage as a program: its robot's parameters, then its own; errors."""
 
+import re
 import sys
 import threading
 from collections.abc import Iterator
@@ -8,10 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from navette.cli.up.config import DEFAULT_FILE
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.navigation.stack import RunOptions, stages
+from navette.navigation.stack.localization import LOCALIZATIONS
 from navette.navigation.stack.scene import resolve_scene
+from navette.navigation.stack.simulation import Simulation
+from navette.navigation.stack.stack import NODE_CLASSES
+from navette.ros2.launch.session import find_launch_file
 from navette.ros2.names.process import RunningProgram, program_threads
 from navette.ros2.names.targets import read_programs
 from navette.ros2.workspace import find_package
@@ -71,6 +77,64 @@ def test_a_stage_uses_its_robots_parameters_then_its_own() -> None:
         )
     assert (cruise, fastest) == (0.3, 1.0)
     graph.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("source", "nodes"),
+    [
+        ("truth", {"/localizer"}),
+        ("odometry+imu", {"/ekf", "/localizer"}),
+        ("slam+wheels", {"/slam"}),
+        ("amcl", {"/ekf", "/amcl"}),
+    ],
+)
+def test_the_localization_is_that_of_the_switch(source: str, nodes: set[str]) -> None:
+    graph = new_graph()
+    words = f"localization --world arena --localization {source}"
+    with running(graph, *words.split()):
+        arrived = threading.Event()
+
+        def look() -> None:
+            if {node.full_name for node in graph.nodes()} == nodes:
+                arrived.set()
+
+        forget = graph.on_change(look)
+        look()
+        assert arrived.wait(WAIT_S), [node.full_name for node in graph.nodes()]
+        forget()
+    graph.close()
+
+
+@pytest.mark.slow
+def test_the_localization_starts_where_the_simulated_robot_does() -> None:
+    options = RunOptions(world="arena", headless=True)
+    simulation = Simulation(options)
+    start = simulation.sim.simulator.pose().to_pose2()
+    simulation.close()
+    graph = new_graph()
+    words = "localization --world arena --localization amcl"
+    with running(graph, *words.split()):
+        names = (f"initial_pose.{each}" for each in ("x", "y", "yaw"))
+        is_given, x, y, yaw = parameters(graph, "/amcl", "set_initial_pose", *names)
+        initial = parameters(graph, "/ekf", "initial_state")
+    assert is_given
+    assert (x, y, yaw) == pytest.approx(tuple(start), abs=1e-3)
+    assert initial[0][:2] == pytest.approx((start.x, start.y), abs=1e-3)
+    graph.close()
+
+
+def test_services_and_launch_file_start_the_nodes_of_a_run() -> None:
+    """``navette up``, ``sim.launch.xml`` and ``navette sim`` have the same nodes."""
+    of_run = {"localization", "viewer"} | {name for name, _ in NODE_CLASSES}
+    of_run -= {name for nodes in LOCALIZATIONS.values() for name, _ in nodes}
+    of_run -= {"ekf", "odom_integrator", "explorer", "lifecycle_manager_navigation"}
+    services = DEFAULT_FILE.read_text(encoding="utf-8")
+    started = set(re.findall(r"navette (\w+) --world", services))
+    assert started == of_run
+    path, _ = find_launch_file(["navette", "sim.launch.xml"])
+    launched = re.findall(r'exec="(\w+)"', path.read_text(encoding="utf-8"))
+    assert set(launched) == of_run | {"lifecycle_manager"}
 
 
 @pytest.mark.slow
