@@ -380,7 +380,9 @@ def _run_localization(
     from navette.navigation.stack.localization_params import localization_parameters
 
     resolved = _resolve(given)
-    of_nodes = localization_parameters(sim, start or Pose2(), resolved.scene.origin)
+    of_nodes = localization_parameters(
+        sim, start or Pose2(0.0, 0.0, 0.0), resolved.scene.origin
+    )
     profile = ParameterOverrides()
     for name, _ in nodes:
         own = of_nodes.get(name, {})

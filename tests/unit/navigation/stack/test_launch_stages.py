@@ -124,6 +124,18 @@ def test_the_localization_starts_where_the_simulated_robot_does() -> None:
     graph.close()
 
 
+@pytest.mark.slow
+def test_a_localization_alone_has_no_start() -> None:
+    """The robot may be real: amcl searches the map."""
+    graph = new_graph()
+    with running(graph, "amcl"):
+        assert parameters(graph, "/amcl", "set_initial_pose") == [False]
+    with running(graph, *"amcl --start 1 2 90 --ros-args -r __node:=here".split()):
+        names = (f"initial_pose.{each}" for each in ("x", "y", "yaw"))
+        assert parameters(graph, "/here", *names) == pytest.approx([1, 2, 1.5708])
+    graph.close()
+
+
 def test_services_and_launch_file_start_the_nodes_of_a_run() -> None:
     """``navette up``, ``sim.launch.xml`` and ``navette sim`` have the same nodes."""
     of_run = {"localization", "viewer"} | {name for name, _ in NODE_CLASSES}
