@@ -199,10 +199,18 @@ class NodeRemapper:
         self.node_name = _first(own, ("__node", "__name")) or node_name
         self.namespace = normalize_namespace(_first(own, ("__ns",)) or namespace)
         self._rules = [rule for rule in own if not rule.match.startswith("__")]
+        #: Full names of the topics and services that were asked for.
+        self._resolved: dict[tuple[str, bool, bool], str] = {}
 
     def resolve(
         self, name: str, *, is_service: bool = False, only_expand: bool = False
     ) -> str:
+        key = name, is_service, only_expand
+        if key not in self._resolved:
+            self._resolved[key] = self._full_name(*key)
+        return self._resolved[key]
+
+    def _full_name(self, name: str, is_service: bool, only_expand: bool) -> str:
         expanded = self._expand(name, is_service=is_service)
         if not only_expand:
             skipped = "topic" if is_service else "service"

@@ -85,9 +85,10 @@ class DescriptorWakeup(Wakeup):
             os.eventfd_write(self._descriptor, 1)
 
     def clear(self) -> None:
-        self._is_set = False
-        with suppress(BlockingIOError):  # it was not set
-            os.eventfd_read(self._descriptor)
+        if self._is_set:  # no system call where nothing woke or waited
+            self._is_set = False
+            with suppress(BlockingIOError):  # another thread is about to write
+                os.eventfd_read(self._descriptor)
 
     @property
     def is_pending(self) -> bool:
@@ -102,8 +103,12 @@ class DescriptorWakeup(Wakeup):
             # Not kept: an object cannot poll again from inside a signal handler.
             poll = select.poll()
             poll.register(self._descriptor, select.POLLIN)
-            return bool(poll.poll(max(timeout_ms, 1)))
-        return bool(select.select((self._descriptor,), (), (), timeout_s)[0])
+            is_readable = bool(poll.poll(max(timeout_ms, 1)))
+        else:
+            is_readable = bool(select.select((self._descriptor,), (), (), timeout_s)[0])
+        if is_readable:  # by a write that a clear() came before: the next one reads it
+            self._is_set = True
+        return is_readable
 
 
 _with_descriptors: "weakref.WeakSet[DescriptorWakeup]" = weakref.WeakSet()

@@ -41,6 +41,7 @@ from navette.sim.sensor_specs import CameraSensor, ImuSensor
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
+_IDENTITY = Transform3.identity()
 _PLANAR = np.array([0, 1, 5, 6, 7, 11, 30, 31, 35])  # x, y, yaw of 6 × 6
 
 
@@ -57,12 +58,12 @@ def odometry_message(
     ``frames``: frame of the pose and child frame. Missing covariances are 0, as are
     those of height, roll and pitch: the robot drives in the plane.
     """
-    (x, y, z), (qx, qy, qz, qw) = frame_T_base @ base_T_child
-    lever = cross(motion.angular, base_T_child.translation)
-    vx, vy, vz = (a + b for a, b in zip(motion.linear, lever, strict=True))
-    child_R_base = base_T_child.inverse().rotation
-    vx, vy, vz = rotate(child_R_base, (vx, vy, vz))
-    wx, wy, wz = rotate(child_R_base, motion.angular)
+    frame_T_child = frame_T_base
+    if base_T_child != _IDENTITY:
+        frame_T_child = frame_T_base @ base_T_child
+        motion = _motion_of(base_T_child, motion)
+    (x, y, z), (qx, qy, qz, qw) = frame_T_child
+    (vx, vy, vz), (wx, wy, wz) = motion
     message = Odometry(
         header=header(stamp_ns, frames[0]),
         child_frame_id=frames[1],
@@ -83,6 +84,16 @@ def odometry_message(
         message.pose.covariance = _spatial(child.pose)
         message.twist.covariance = _spatial(child.twist)
     return message
+
+
+def _motion_of(base_T_child: Transform3, motion: Motion) -> Motion:
+    """Return the velocity of a frame fixed to the base, in that frame."""
+    lever = cross(motion.angular, base_T_child.translation)
+    vx, vy, vz = (a + b for a, b in zip(motion.linear, lever, strict=True))
+    child_R_base = base_T_child.inverse().rotation
+    return Motion(
+        rotate(child_R_base, (vx, vy, vz)), rotate(child_R_base, motion.angular)
+    )
 
 
 def joint_message(joints: JointReadings, stamp_ns: int) -> JointState:

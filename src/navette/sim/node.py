@@ -358,10 +358,10 @@ class SimNode(StageNode):
             message = self._odometry_message(stamp_ns, pose, motion, None)
         else:
             message = self._wheel_message(stamp_ns)
-        self.publish(topics.ODOMETRY.name, message)
+        self.hand_over(topics.ODOMETRY.name, message)
 
     def _publish_wheels(self, stamp_ns: int) -> None:
-        self.publish(topics.WHEEL_ODOMETRY.name, self._wheel_message(stamp_ns))
+        self.hand_over(topics.WHEEL_ODOMETRY.name, self._wheel_message(stamp_ns))
 
     def _wheel_message(self, stamp_ns: int) -> Odometry:
         wheels = self.simulator.wheel_odometry()
@@ -402,7 +402,7 @@ class SimNode(StageNode):
             self.simulator.motion(),
             Transform3.identity(),
         )
-        self.publish(topics.GROUND_TRUTH.name, message)
+        self.hand_over(topics.GROUND_TRUTH.name, message)
 
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params

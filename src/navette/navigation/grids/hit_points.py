@@ -1,5 +1,7 @@
 """Points at which beams ended, as messages beside the grid of the same stamp."""
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,14 +42,25 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
         InvalidValueError: no x and y of type float32, or data of another size.
     """
     x, y = _checked_offsets(msg)
-    rows = np.asarray(msg.data, np.uint8).reshape(-1, msg.point_step)
+    rows = np.asarray(msg.data, np.uint8).view(_row_type(x, y, msg.point_step))
     points = np.empty((len(rows), 2))
-    points[:, 0] = np.ascontiguousarray(rows[:, x : x + _FIELD_BYTES]).view("<f4")[:, 0]
-    points[:, 1] = np.ascontiguousarray(rows[:, y : y + _FIELD_BYTES]).view("<f4")[:, 0]
-    finite = np.isfinite(points)
-    if not finite.all():
-        points = points[finite.all(axis=1)]
+    points[:, 0], points[:, 1] = rows["x"], rows["y"]
+    if not np.isfinite(points).all():
+        points = points[np.isfinite(points).all(axis=1)]
     return points
+
+
+@functools.lru_cache(maxsize=16)
+def _row_type(x: int, y: int, step: int) -> np.dtype[np.void]:
+    """Return the type of a point of ``step`` bytes with x and y at these offsets."""
+    return np.dtype(
+        {
+            "names": ["x", "y"],
+            "formats": ["<f4", "<f4"],
+            "offsets": [x, y],
+            "itemsize": step,
+        }
+    )
 
 
 def _checked_offsets(msg: PointCloud2) -> tuple[int, int]:

@@ -240,11 +240,7 @@ class PoseTracker:
             transform = self._static(child, self.base_frame)
             if transform is None:
                 return None
-            child_T_base = transform.to_pose2()
-            self._child_T_base = (
-                child,
-                _HERE if child_T_base == _HERE else child_T_base,
-            )
+            self._child_T_base = child, _plain(transform.to_pose2())
         return self._child_T_base[1]
 
     def _odom_in_map(self, frame: str) -> Pose2 | None:
@@ -262,7 +258,8 @@ class PoseTracker:
             return None
         known = self._newest_transform
         if known is None or known[0] is not transform:
-            self._newest_transform = known = transform, transform.to_pose2()
+            known = transform, _plain(transform.to_pose2())
+            self._newest_transform = known
         return known[1]
 
     def _await_map(self, error: TransformException) -> None:
@@ -296,6 +293,11 @@ class PoseTracker:
             self._node.get_logger().warning(
                 f"odometry not used: {detail}", throttle_duration_sec=5.0
             )
+
+
+def _plain(pose: Pose2) -> Pose2:
+    """Return ``_HERE`` itself for the identity, which is not multiplied with."""
+    return _HERE if pose == _HERE else pose
 
 
 def _is_near(pose: Pose2) -> bool:
