@@ -86,6 +86,7 @@ class PredictiveFollower(BaseFollower):
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._body_reach_m = RolloutBody.of(self._body).reach_m
+        self._largest_disc_m = float(self._body[:, 2].max())
         self._calm = _Mode.of(params, self._body, swerves=False)
         self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
@@ -143,9 +144,10 @@ class PredictiveFollower(BaseFollower):
         self._field = local_field(
             points,
             _CELL_M,
-            clearance_m + 1.0,
+            clearance_m + self._body_reach_m + _FIELD_MARGIN_M,
             half_cell,
-            search_m=clearance_m + self._body_reach_m + _FIELD_MARGIN_M,
+            # Where discs of the body are this far away, that still costs.
+            exact_m=clearance_m + self._largest_disc_m + half_cell + 1.5 * _CELL_M,
         )
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navette.navigation.control.local_field import local_field, open_field
+from navette.navigation.control.rollouts import LocalField
 
-EXACT_M = 0.35
+REACH_M = 1.0
 
 
 def centres(shape: tuple[int, ...], x: float, y: float, edge: float) -> np.ndarray:
@@ -15,32 +16,40 @@ def centres(shape: tuple[int, ...], x: float, y: float, edge: float) -> np.ndarr
     return np.stack((x + (columns + 0.5) * edge, y + (rows + 0.5) * edge), axis=-1)
 
 
+def distances(field: LocalField, points: np.ndarray) -> np.ndarray:
+    """Distances from the centres of the cells, measured one by one."""
+    cells = centres(field.distance_m.shape, field.x, field.y, field.resolution)
+    gaps = np.hypot(*(cells[..., None, :] - points).transpose(3, 0, 1, 2))
+    return np.asarray(gaps.min(axis=-1))
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     count=st.integers(1, 30),
     seed=st.integers(0, 1000),
     edge=st.sampled_from([0.02, 0.05, 0.1]),
+    exact_m=st.sampled_from([0.0, 0.12, 0.35, 1.0, np.inf]),
 )
-def test_near_obstacles_the_distance_is_exact(
-    count: int, seed: int, edge: float
+def test_distances_are_exact_near_obstacles_and_bounds_elsewhere(
+    count: int, seed: int, edge: float, exact_m: float
 ) -> None:
     points = np.random.default_rng(seed).uniform(-2, 2, (count, 2))
     points += np.array((500.0, -90.0))
-    field = local_field(points, edge, 1.0)
-    cells = centres(field.distance_m.shape, field.x, field.y, edge)
-    gaps = np.hypot(*(cells[..., None, :] - points).transpose(3, 0, 1, 2))
-    exact = gaps.min(axis=-1)
-    near = exact < EXACT_M
-    np.testing.assert_allclose(field.distance_m[near], exact[near], atol=1e-5)
-    assert (field.distance_m[~near] >= EXACT_M - 1e-6).all()
-    off = np.abs(field.distance_m - np.minimum(exact, 1.0))
-    assert off.max() <= edge, "elsewhere the error is below a cell"
+    field = local_field(points, edge, REACH_M, exact_m=exact_m)
+    true_m, found_m = distances(field, points), field.distance_m
+    exact_m = min(exact_m, REACH_M)
+    near = true_m < exact_m - 1e-5
+    np.testing.assert_allclose(found_m[near], true_m[near], atol=1e-5)
+    assert (found_m[~near] >= exact_m - 1e-5).all()
+    assert (found_m[true_m <= REACH_M] <= exact_m + 1e-5).all()
 
 
-def test_the_border_is_far_from_all_obstacles() -> None:
-    distance = local_field(np.array([[1.0, 2.0]]), 0.05, 1.0).distance_m
-    border = np.concatenate([distance[0], distance[-1], *distance[:, [0, -1]].T])
-    assert border.min() >= 0.95
+def test_the_border_is_beyond_the_reach_of_all_obstacles() -> None:
+    points = np.array([[1.0, 2.0], [3.31, -0.77]])
+    for edge in (0.02, 0.05, 0.0625):
+        true_m = distances(local_field(points, edge, REACH_M), points)
+        border = np.concatenate([true_m[0], true_m[-1], *true_m[:, [0, -1]].T])
+        assert border.min() >= REACH_M
 
 
 def test_without_obstacles_everything_is_far() -> None:
