@@ -1,8 +1,9 @@
 """Queue of clients' commands for the executor, with a limit on the executor's time.
 
 Clients' commands run on the thread of the robot's nodes. The queue runs them in small
-slices between other callbacks, the clients in turn, so that the commands of one client
-delay neither the robot nor the commands of other clients.
+slices, the clients in turn, so that the commands of one client delay neither the robot
+nor the commands of other clients. After each slice it rests: calls from other threads
+run before the events that are due, so that slices without a rest would stop the clock.
 """
 
 import itertools
@@ -15,6 +16,7 @@ from navette.viewer.token_bucket import TokenBucket
 from navette.viewer.work_time import WorkTime
 
 _SLICE_S = 0.002  # after which other callbacks run first
+_MAX_REST_S = 0.02  # after a slice, otherwise as long as the slice took
 _SHARE = 0.1  # seconds of the executor's time per second
 _BURST_S = 0.25  # a page that opens subscribes to some 40 topics
 
@@ -41,7 +43,7 @@ class CommandQueue:
         *,
         cpu_s: Callable[[], float] = time.thread_time,
     ) -> None:
-        self._run_soon, self._run_later = run_soon, run_later
+        self._run_soon, self._run_later, self._now_s = run_soon, run_later, now_s
         self._work = WorkTime(now_s, cpu_s)
         self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}
         self._turns: deque[Hashable] = deque()
@@ -50,6 +52,7 @@ class CommandQueue:
         self._is_scheduled = False
         self._numbers = itertools.count()
         self._budget = TokenBucket(_SHARE, _BURST_S, now_s)
+        self._rested_s = now_s()  # when the rest after the last slice ends
 
     def add(
         self,
@@ -78,22 +81,33 @@ class CommandQueue:
             if self._is_scheduled:
                 return
             self._is_scheduled = True
-        self._run_soon(self._run_slice)
+            wait_s = self._wait_s()
+        self._schedule(wait_s)
 
     def _run_slice(self) -> None:
         """Run commands for a short time, then let other callbacks run."""
+        begin_s = self._now_s()
         self._work.begin()
         while (command := self._next()) is not None:
             command()
-            if self._work.elapsed_s() >= _SLICE_S:
+            if self._now_s() - begin_s >= _SLICE_S:
                 break
-        self._budget.take(self._work.elapsed_s())
+        work_s, now_s = self._work.elapsed_s(), self._now_s()
         with self._lock:
+            self._budget.take(work_s)
+            self._rested_s = now_s + min(now_s - begin_s, _MAX_REST_S)
             self._is_scheduled = bool(self._turns or self._urgent)
             if not self._is_scheduled:
                 return
-        wait_s = self._budget.wait_s()
-        if wait_s:
+            wait_s = self._wait_s()
+        self._schedule(wait_s)
+
+    def _wait_s(self) -> float:
+        """Return the time until the next slice may begin."""
+        return max(self._rested_s - self._now_s(), self._budget.wait_s())
+
+    def _schedule(self, wait_s: float) -> None:
+        if wait_s > 0.0:
             self._run_later(wait_s, lambda: self._run_soon(self._run_slice))
         else:
             self._run_soon(self._run_slice)

@@ -24,6 +24,7 @@ from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, ConnectionGraph, Level, OfferedService
 from navette.viewer.session import CallId, ProgramCommands, Session, Topic, Watch
+from navette.viewer.traffic import Traffic
 
 _MAX_CLIENT_CHANNELS = 64
 _MAX_CALLS = 32  # of services by a client, without a response
@@ -70,6 +71,7 @@ class Hub:
         self._topics: dict[Topic, Channel] = {}
         self._watchers: dict[Watch, set[int]] = {}
         self._last = LastValueCache()
+        self._traffic = Traffic()
         self._services = OfferedServices()
         self._graph = replies.EMPTY_GRAPH
         # Encoded once for any number of clients that join.
@@ -119,17 +121,21 @@ class Hub:
         """Deliver no more streams to a client that does not read.
 
         Topics that no other client shows are no longer subscribed, so that no camera
-        is rendered for it. States (latched or stored topics) are queued further.
+        is rendered for it. What is sent rarely (goals, states) is queued further: the
+        next message may not come. Called again while the client does not read, since
+        a topic may become a stream.
         """
         session.is_suspended = True
         for channel_id in session.subscription_by_channel:
-            self._suspend_channel(session, self._channels[channel_id])
+            channel = self._channels[channel_id]
+            is_stream = channel_id in self._traffic.streams and not channel.latched
+            if is_stream and channel_id not in session.suspended_channels:
+                session.suspended_channels.add(channel_id)
+                self._remove_watcher(session, channel)
 
-    def _suspend_channel(self, session: Session, channel: Channel) -> None:
-        is_stream = not channel.latched and channel.id not in self._last
-        if is_stream and channel.id not in session.suspended_channels:
-            session.suspended_channels.add(channel.id)
-            self._remove_watcher(session, channel)
+    def end_period(self) -> None:
+        """Count the messages of the next period; called at a constant rate."""
+        self._traffic.end_period()
 
     def resume(self, session: Session) -> None:
         """Deliver streams again, from the newest message on."""
@@ -184,6 +190,7 @@ class Hub:
 
     def message(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         channel_id = watch.channel.id
+        self._traffic.add(channel_id, len(payload))
         for client in self._watchers.get(watch, ()):
             session = self._sessions[client]
             subscription_id = session.subscription_by_channel[channel_id]
@@ -300,8 +307,6 @@ class Hub:
                 session.channel_by_subscription[subscription_id] = channel_id
                 session.subscription_by_channel[channel_id] = subscription_id
                 self._add_watcher(session, channel)
-                if session.is_suspended:
-                    self._suspend_channel(session, channel)
         _report(session, "subscribe", problems)
 
     def _on_unsubscribe(self, session: Session, request: frames.Unsubscribe) -> None:

@@ -32,7 +32,8 @@ class Outbox:
     should be disconnected. Data frames belong to a stream (a subscription); each stream
     keeps its newest ``depth`` frames and at most ``stream_bytes`` (but always one
     frame), so that a slow client receives current data of every topic at a lower rate.
-    All streams together keep at most ``data_bytes`` (but always the newest frame).
+    All streams together keep at most ``data_bytes`` (but always the newest frame): the
+    stream with the most bytes loses its oldest, so that a goal outlives images.
     """
 
     def __init__(
@@ -85,15 +86,31 @@ class Outbox:
         while len(waiting.frames) > 1 and (
             len(waiting.frames) > limit or waiting.size > self._stream_bytes
         ):
-            size = len(waiting.frames.popleft())
-            waiting.size -= size
-            self._data_size -= size
-            # A stream has as many turns as frames.
-            self._turns.remove(stream)
-            self.dropped += 1
+            self._drop_oldest(stream)
         while self._data_size > self._data_limit and len(self._turns) > 1:
-            self._pop_data()
-            self.dropped += 1
+            self._drop_oldest(self._largest(stream))
+
+    def _largest(self, newest: Hashable) -> Hashable:
+        """Return the stream with the most bytes, besides the frame put last."""
+        return max(
+            (
+                name
+                for name, waiting in self._streams.items()
+                if name != newest or len(waiting.frames) > 1
+            ),
+            key=lambda name: self._streams[name].size,
+        )
+
+    def _drop_oldest(self, stream: Hashable) -> None:
+        waiting = self._streams[stream]
+        size = len(waiting.frames.popleft())
+        waiting.size -= size
+        self._data_size -= size
+        # A stream has as many turns as frames.
+        self._turns.remove(stream)
+        if not waiting.frames:
+            del self._streams[stream]
+        self.dropped += 1
 
     def forget(self, stream: Hashable) -> None:
         waiting = self._streams.pop(stream, None)

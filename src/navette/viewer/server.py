@@ -257,8 +257,9 @@ class ViewerServer:
 
     def _run_period(self) -> None:
         self._on_period()
+        self._hub.end_period()
         for peer in self._peers:
-            if peer.is_stalled and not peer.session.is_suspended:
+            if peer.is_stalled:
                 self._hub.suspend(peer.session)
         self._wake_clients()
         if not self._stop.is_set():

@@ -15,6 +15,7 @@ from navette.viewer.replies import Channel, ConnectionGraph, message_data
 from navette.viewer.session import Session, Topic, Watch
 
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
+GOAL = Topic("/goal_point", "geometry_msgs/msg/PointStamped", "Header header")
 MAP = Topic("/map", "nav_msgs/msg/OccupancyGrid", "int8[] data", latched=True)
 
 LARGE = "package://navette/large"
@@ -45,6 +46,13 @@ class Bench:
     def subscribe(self, session: Session, subscription: int, channel: int) -> list[Any]:
         pair = {"id": subscription, "channelId": channel}
         return self.ask(session, op="subscribe", subscriptions=[pair])
+
+    def stream(self, channel: Channel) -> None:
+        """Publish as often as a stream for two periods."""
+        for _ in range(2):
+            for stamp_ns in range(1, 6):
+                self.hub.message(Watch(channel, None), stamp_ns, b"old")
+            self.hub.end_period()
 
     def channel(self, topic: str) -> Channel:
         return next(c for c in self.hub.channels if c.topic == topic)
@@ -346,6 +354,8 @@ def test_a_client_that_does_not_read_has_no_streams_until_it_reads(
     bench.subscribe(slow, 1, scan.id)
     bench.subscribe(slow, 2, grid.id)
     bench.program.take()
+    bench.stream(scan)
+    sent(slow.outbox)
     bench.hub.suspend(slow)
     assert bench.program.take() == [("unwatch", "/lidar", None)]
 
@@ -364,17 +374,67 @@ def test_a_client_that_does_not_read_has_no_streams_until_it_reads(
     assert bench.program.take() == [("unwatch", "/lidar", None)]
 
 
+def test_a_client_that_hangs_receives_what_is_sent_once(bench: Bench) -> None:
+    """A goal, for example: no later message replaces it."""
+    bench.hub.set_topics([SCAN, GOAL])
+    scan, goal = bench.channel("/lidar"), bench.channel("/goal_point")
+    slow = bench.join()
+    bench.subscribe(slow, 1, scan.id)
+    bench.subscribe(slow, 2, goal.id)
+    bench.stream(scan)
+    sent(slow.outbox)
+    bench.hub.suspend(slow)
+    bench.hub.message(Watch(goal, None), 5, b"goal")
+    bench.hub.resume(slow)
+    assert sent(slow.outbox) == [message_data(2, 5, b"goal")]
+
+
+def test_a_topic_that_becomes_a_stream_is_suspended_later(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    scan = bench.channel("/lidar")
+    slow = bench.join()
+    bench.subscribe(slow, 1, scan.id)
+    bench.program.take()
+    bench.hub.suspend(slow)
+    assert bench.program.take() == []
+    bench.stream(scan)
+    bench.hub.suspend(slow)
+    assert bench.program.take() == [("unwatch", "/lidar", None)]
+
+
+def test_few_messages_with_many_bytes_are_a_stream(bench: Bench) -> None:
+    """A camera at 1 Hz: no image is rendered for a client that does not read."""
+    bench.hub.set_topics([SCAN])
+    scan = bench.channel("/lidar")
+    slow = bench.join()
+    bench.subscribe(slow, 1, scan.id)
+    bench.program.take()
+    bench.hub.message(Watch(scan, None), 5, bytes(600_000))
+    bench.hub.end_period()
+    bench.hub.suspend(slow)
+    assert bench.program.take() == [("unwatch", "/lidar", None)]
+    bench.hub.resume(slow)
+    bench.program.take()
+    for _ in range(2):
+        bench.hub.end_period()
+    bench.hub.suspend(slow)
+    assert bench.program.take() == [], "no message in the last two periods"
+
+
 def test_a_suspended_client_changes_its_subscriptions(bench: Bench) -> None:
     bench.hub.set_topics([SCAN])
     scan = bench.channel("/lidar")
     slow = bench.join()
     bench.hub.suspend(slow)
     assert bench.subscribe(slow, 1, scan.id) == []
-    bench.hub.message(Watch(scan, None), 5, b"scan")
-    assert not slow.outbox
+    bench.stream(scan)
+    sent(slow.outbox)
+    bench.hub.suspend(slow)
+    assert bench.program.take() == [
+        ("watch", "/lidar", None),
+        ("unwatch", "/lidar", None),
+    ]
     assert bench.ask(slow, op="unsubscribe", subscriptionIds=[1]) == []
     bench.hub.resume(slow)
     bench.hub.leave(slow)
-    calls = bench.program.take()
-    assert calls.count(("watch", "/lidar", None)) == 1
-    assert calls[-1] == ("unwatch", "/lidar", None)
+    assert bench.program.take() == []

@@ -54,3 +54,19 @@ def test_a_client_that_never_reads_overflows() -> None:
     outbox.put_control("x" * 8)
     assert outbox.overflowed
     assert len(drain(outbox)) == 2
+
+
+def test_of_too_many_bytes_the_largest_stream_loses_its_oldest() -> None:
+    """A goal outlives the images that come after it."""
+    outbox = Outbox(data_bytes=100)
+    outbox.put_data("goal", b"goal")
+    for number in range(20):
+        outbox.put_data("camera", bytes([number]) * 40)
+        outbox.put_data("depth", bytes([number]) * 30)
+    frames = []
+    while outbox:
+        frames.append(outbox.pop())
+    assert frames[0] == b"goal"
+    assert bytes([19]) * 40 in frames
+    assert bytes([19]) * 30 in frames
+    assert sum(map(len, frames)) <= 100

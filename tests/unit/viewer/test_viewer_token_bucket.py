@@ -1,5 +1,6 @@
 """Rates with bursts, in the queue of commands and in the selector."""
 
+import itertools
 from collections.abc import Callable
 from functools import partial
 
@@ -103,6 +104,14 @@ class Executor:
     def turn(self) -> None:
         self.ready.pop(0)()
 
+    def rest(self, time: Time) -> float:
+        """Let the time pass until the next slice may begin; return how long."""
+        [(delay_s, function)] = self.later
+        self.later.clear()
+        time.advance(delay_s)
+        function()
+        return delay_s
+
 
 def test_commands_of_a_flooding_client_do_not_delay_those_of_others(time: Time) -> None:
     executor, ran = Executor(time), list[str]()
@@ -120,7 +129,38 @@ def test_commands_of_a_flooding_client_do_not_delay_those_of_others(time: Time) 
     assert len(executor.ready) == 1
     executor.turn()
     assert ran == ["flood 0", "stop"]
-    assert len(executor.ready) == 1, "other callbacks run between two slices"
+    assert executor.ready == [], "calls that wait run before the events that are due"
+    assert executor.rest(time) == pytest.approx(0.003)
+    assert len(executor.ready) == 1
+
+
+def test_no_two_slices_follow_each_other_directly(time: Time) -> None:
+    """Whatever arrives: the loop's other events have at least half of the time."""
+    executor, slices = Executor(time), list[tuple[float, float]]()
+
+    def command() -> None:
+        begin_s = time.now_s
+        time.advance(0.004)
+        slices.append((begin_s, time.now_s))
+
+    for number in range(20):  # each alone in the queue: it empties every time
+        executor.queue.add(number, command)
+        if executor.later:
+            assert executor.ready == []
+            executor.rest(time)
+        executor.turn()
+    assert len(slices) == 20
+    for (begin_s, end_s), (next_s, _) in itertools.pairwise(slices):
+        assert next_s - end_s >= end_s - begin_s - 1e-9
+
+
+def test_a_command_after_a_pause_does_not_wait(time: Time) -> None:
+    executor = Executor(time)
+    for _ in range(100):  # an operator's stick
+        executor.queue.add("driver", partial(time.advance, 0.001))
+        assert executor.later == []
+        executor.turn()
+        time.advance(0.05)
 
 
 def test_commands_use_a_tenth_of_the_executor_at_most(time: Time) -> None:
@@ -158,10 +198,13 @@ def test_commands_are_not_charged_for_what_other_threads_do(time: Time) -> None:
 
     for number in range(50):
         executor.queue.add("driver", command(number))
-    while executor.ready:
+    rests_s = []
+    executor.turn()
+    while executor.later:
+        rests_s.append(executor.rest(time))
         executor.turn()
     assert ran == list(range(50))
-    assert executor.later == []
+    assert max(rests_s) == pytest.approx(0.02), "the longest rest, without a debt"
 
 
 def test_commands_of_a_lane_run_in_order_and_replace_their_like(time: Time) -> None:
