@@ -105,7 +105,7 @@ def _lower(square: Any, u: float, v: float, cells: int) -> None:
 
 
 @kernel
-def _finish(line: Any, is_near: Any, resolution: float) -> None:
+def _finish(line: Any, is_near: Any, resolution: Any) -> None:
     """Convert squares of cells to metres, in blocks with an obstacle within reach."""
     for block in range(is_near.size):
         part = line[block * _BLOCK : (block + 1) * _BLOCK]
