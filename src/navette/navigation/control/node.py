@@ -423,9 +423,10 @@ class ControlNode(MotionNode):
         )
         if obstacles is not None and self._obstacles.placed_ns is not None:
             moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
-            still = ~inside_discs(obstacles.points, moving, _MOVING_MARGIN_M)
-            static = obstacles._replace(points=obstacles.points[still])
-            self._follower.set_obstacles(*static)
+            if len(moving):
+                still = ~inside_discs(obstacles.points, moving, _MOVING_MARGIN_M)
+                obstacles = obstacles._replace(points=obstacles.points[still])
+            self._follower.set_obstacles(*obstacles)
             self._placed_ns = self._obstacles.placed_ns
 
     def _send(self, output: FollowerOutput) -> None:

@@ -16,7 +16,7 @@ from navette.navigation.grids.alignment import placed
 from navette.navigation.grids.hit_points import HitPoints
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
-from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.navigation.grids.spec import FREE, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     NO_POINTS,
     cell_coordinates,
@@ -24,6 +24,8 @@ from navette.navigation.grids.sub_cells import (
     point_radius,
 )
 from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
+
+_PART = 64  # cells of a row that are searched at once
 
 
 class RobotPoses(Protocol):
@@ -168,12 +170,13 @@ class ObstacleTracker:
         if hits is None:
             points, radius = nearby(cells, spec, map_T_frame), spec.resolution / 2
         else:
-            points = map_T_frame.apply(hits)
-            points = _within(points, around.x, around.y, float(reach_m))
+            points = _placed_within(
+                hits, np.array(map_T_frame), np.array(around), float(reach_m)
+            )
             radius = point_radius(spec.resolution)
         if self._map is not None:
             known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
-            known = known[~_is_seen(known, cells, spec, map_T_frame)]
+            known = _unless_seen(known, cells, here.spec)
             if hits is None:
                 radius = max(radius, self._map[1].resolution / 2)
             else:
@@ -257,43 +260,42 @@ def _stamp_ns(msg: OccupancyGrid) -> int:
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
-def _is_seen(
-    points: NDArray[np.float64],
-    cells: NDArray[np.int8],
-    spec: GridSpec,
-    map_T_frame: Pose2,
-) -> NDArray[np.bool_]:
-    """Return (N,) whether points (N, 2), map, lie in known cells of a costmap."""
-    seen = np.zeros(len(points), np.bool_)
-    frame_T_map = (map_T_frame @ spec.origin).inverse()
-    _mark_seen(np.array(frame_T_map), spec.resolution, points, cells, seen)
-    return seen
+def _unless_seen(
+    points: NDArray[np.float64], cells: NDArray[np.int8], spec: GridSpec
+) -> NDArray[np.float64]:
+    """Return the points (N, 2), map, that are not in known cells of a costmap."""
+    kept: NDArray[np.float64] = _drop_seen(points, cells, grid_frame(spec))
+    return kept
 
 
 @kernel
-def _mark_seen(
-    frame_T_map: Any, resolution: float, points: Any, cells: Any, seen: Any
-) -> None:
-    x, y, yaw = frame_T_map
-    c, s = math.cos(yaw), math.sin(yaw)
+def _drop_seen(points: Any, cells: Any, frame: Any) -> Any:
     height, width = cells.shape
-    for k in range(points.shape[0]):
-        px, py = points[k, 0], points[k, 1]
-        column = math.floor((c * px - s * py + x) / resolution)
-        row = math.floor((s * px + c * py + y) / resolution)
-        if 0 <= row < height and 0 <= column < width:
-            seen[k] = cells[row, column] != UNKNOWN
-
-
-@kernel
-def _within(points: Any, x: float, y: float, reach: float) -> Any:
-    """Return the points (N, 2) within reach of (x, y)."""
     kept = np.empty_like(points)
     count = 0
     for k in range(points.shape[0]):
-        dx, dy = points[k, 0] - x, points[k, 1] - y
-        if dx * dx + dy * dy <= reach * reach:
+        dx, dy = points[k, 0] - frame.x, points[k, 1] - frame.y
+        column = math.floor((frame.cos * dx + frame.sin * dy) / frame.resolution)
+        row = math.floor((frame.cos * dy - frame.sin * dx) / frame.resolution)
+        inside = 0 <= row < height and 0 <= column < width
+        if not (inside and cells[row, column] != UNKNOWN):
             kept[count, 0], kept[count, 1] = points[k, 0], points[k, 1]
+            count += 1
+    return kept[:count]
+
+
+@kernel
+def _placed_within(points: Any, map_T_frame: Any, around: Any, reach: float) -> Any:
+    """Return the points (N, 2) of a frame that are within reach of a pose, map."""
+    x, y, yaw = map_T_frame
+    c, s = math.cos(yaw), math.sin(yaw)
+    kept = np.empty_like(points)
+    count = 0
+    for k in range(points.shape[0]):
+        px = x + c * points[k, 0] - s * points[k, 1]
+        py = y + s * points[k, 0] + c * points[k, 1]
+        if (px - around[0]) ** 2 + (py - around[1]) ** 2 <= reach * reach:
+            kept[count, 0], kept[count, 1] = px, py
             count += 1
     return kept[:count]
 
@@ -358,16 +360,24 @@ def _gather(
     top, left = max(0, int(row - reach)), max(0, int(column - reach))
     bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
     right = max(left, min(cost.shape[1], int(column + reach) + 1))
-    points = np.empty(((bottom - top) * (right - left), 2))
+    points = np.empty((256, 2))
     count = 0
     c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
     for i in range(top, bottom):
-        line = cost[i]
         v = i + 0.5
-        for j in range(left, right):
-            u = j + 0.5
-            if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
-                points[count, 0] = x + c * u - s * v
-                points[count, 1] = y + s * u + c * v
-                count += 1
+        for first in range(left, right, _PART):
+            line = cost[i, first : min(right, first + _PART)]
+            highest = np.int8(FREE)
+            for j in range(line.size):  # vectorised: most parts have no lethal cell
+                highest = max(highest, line[j])
+            if highest < lethal:
+                continue
+            if count + _PART > points.shape[0]:
+                points = np.concatenate((points, np.empty_like(points)))
+            for j in range(line.size):
+                u = first + j + 0.5
+                if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
+                    points[count, 0] = x + c * u - s * v
+                    points[count, 1] = y + s * u + c * v
+                    count += 1
     return points[:count].copy()

@@ -6,6 +6,7 @@ of a sub-cell; one without a mask (a loaded map, a costmap without points) is it
 centre with half a cell around it.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -90,15 +91,19 @@ def cell_points(
     centre: with the radius they cover the border of half a cell. ``first`` as in
     :func:`points_by_cell`.
     """
-    away = max(0.0, 0.5 * spec.resolution - radius_m)
     points: Points = _cell_points(
         masks,
         np.ascontiguousarray(cells, np.int64),
         *first,
         grid_frame(spec),
-        away * _CIRCLE,
+        _circle(spec, radius_m),
     )
     return points
+
+
+def _circle(spec: GridSpec, radius_m: float) -> Points:
+    """Return points (N, 2), m, about a cell's centre that stand for the cell."""
+    return max(0.0, 0.5 * spec.resolution - radius_m) * _CIRCLE
 
 
 def local_cell_points(
@@ -114,12 +119,10 @@ def local_cell_points(
     """
     if not len(centers):
         return NO_POINTS
-    cells = np.floor(cell_coordinates(spec, centers)[:, ::-1]).astype(np.int64)
-    first = cells.min(axis=0)
-    rows, columns = (cells.max(axis=0) - first + 1).tolist()
-    masks = np.zeros((rows, columns), np.uint64)
-    _add_marks(masks, uv, int(first[0]), int(first[1]))
-    return cell_points(masks, spec, cells, radius_m, (int(first[0]), int(first[1])))
+    points: Points = _local_points(
+        uv, centers, grid_frame(spec), _circle(spec, radius_m)
+    )
+    return points
 
 
 def cell_coordinates(spec: GridSpec, points: Points) -> Points:
@@ -163,6 +166,28 @@ def _mark(masks: Any, uv: Any, first_row: int, first_column: int) -> Any:
         cells[k, 0] = ordered[k] // width + first_row
         cells[k, 1] = ordered[k] % width + first_column
     return cells
+
+
+@kernel
+def _local_points(uv: Any, centers: Any, frame: Any, circle: Any) -> Any:
+    """Return the points of the lethal cells with these centres (M, 2)."""
+    cells = np.empty(centers.shape, np.int64)
+    for k in range(centers.shape[0]):
+        dx, dy = centers[k, 0] - frame.x, centers[k, 1] - frame.y
+        u = frame.cos * dx + frame.sin * dy
+        v = frame.cos * dy - frame.sin * dx
+        cells[k, 0] = math.floor(v / frame.resolution)
+        cells[k, 1] = math.floor(u / frame.resolution)
+    first_row, last_row = cells[0, 0], cells[0, 0]
+    first_column, last_column = cells[0, 1], cells[0, 1]
+    for k in range(cells.shape[0]):
+        first_row, last_row = min(first_row, cells[k, 0]), max(last_row, cells[k, 0])
+        first_column = min(first_column, cells[k, 1])
+        last_column = max(last_column, cells[k, 1])
+    shape = (last_row - first_row + 1, last_column - first_column + 1)
+    masks = np.zeros(shape, np.uint64)
+    _add_marks(masks, uv, first_row, first_column)
+    return _cell_points(masks, cells, first_row, first_column, frame, circle)
 
 
 @kernel

@@ -1,0 +1,99 @@
+"""Kernels that collect obstacle points, against their steps one by one."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from navette.geometry import Pose2
+from navette.navigation.grids import (
+    LETHAL,
+    UNKNOWN,
+    GridSpec,
+    cell_points,
+    mark_points,
+    obstacle_points,
+    point_radius,
+)
+from navette.navigation.grids.obstacles import _placed_within, _unless_seen
+from navette.navigation.grids.sub_cells import cell_coordinates, local_cell_points
+
+SEEDS = st.integers(0, 10_000)
+
+
+def some_pose(rng: np.random.Generator) -> Pose2:
+    x, y, yaw = rng.uniform((-5, -5, -3.1), (5, 5, 3.1)).tolist()
+    return Pose2(x, y, yaw)
+
+
+def some_grid(rng: np.random.Generator) -> tuple[np.ndarray, GridSpec]:
+    height, width = rng.integers(1, 150, 2).tolist()
+    spec = GridSpec(float(rng.choice([0.05, 0.1])), width, height, some_pose(rng))
+    share = rng.choice([0.0, 0.01, 0.3])
+    cells = rng.integers(UNKNOWN, LETHAL, spec.shape, np.int8)
+    cells[rng.random(spec.shape) < share] = LETHAL
+    return cells, spec
+
+
+def centres(spec: GridSpec, cells: np.ndarray) -> np.ndarray:
+    return spec.centers_of(np.argwhere(cells))
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS)
+def test_obstacle_points_are_the_lethal_cells_within_reach(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cells, spec = some_grid(rng)
+    map_T_grid, around = some_pose(rng), some_pose(rng)
+    reach_m, lethal = float(rng.uniform(0, 6)), int(rng.integers(1, LETHAL + 1))
+    found = obstacle_points(
+        cells, spec, map_T_grid, lethal_cost=lethal, around=around, reach_m=reach_m
+    )
+    plain = map_T_grid.apply(centres(spec, cells >= lethal))
+    away = np.hypot(*(plain - (around.x, around.y)).T)
+    np.testing.assert_allclose(found, plain[away <= reach_m], atol=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS)
+def test_placed_points_within_reach(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    map_T_frame, around, reach_m = some_pose(rng), some_pose(rng), rng.uniform(0, 8)
+    points = rng.uniform(-6, 6, (int(rng.integers(0, 50)), 2))
+    found = _placed_within(points, np.array(map_T_frame), np.array(around), reach_m)
+    plain = map_T_frame.apply(points)
+    away = np.hypot(*(plain - (around.x, around.y)).T)
+    np.testing.assert_allclose(found, plain[away <= reach_m], atol=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS)
+def test_points_in_known_cells_are_left_out(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cells, spec = some_grid(rng)
+    points = rng.uniform(-12, 12, (40, 2))
+
+    def is_seen(x: float, y: float) -> bool:
+        cell = spec.cell_of(x, y)
+        return spec.contains(*cell) and cells[cell] != UNKNOWN
+
+    plain = [point for point in points.tolist() if not is_seen(*point)]
+    found = _unless_seen(points, cells, spec)
+    np.testing.assert_array_equal(found, np.array(plain).reshape(-1, 2))
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS)
+def test_points_of_a_few_cells_are_those_of_the_whole_grid(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    _, spec = some_grid(rng)
+    size = np.array((spec.width, spec.height)) * spec.resolution
+    hits = spec.origin.apply(rng.uniform(-0.2, 1.2, (200, 2)) * size)
+    cells = np.argwhere(rng.random(spec.shape) < 0.02)
+    radius_m = point_radius(spec.resolution)
+    masks = np.zeros(spec.shape, np.uint64)
+    mark_points(masks, spec, hits)
+    found = local_cell_points(
+        cell_coordinates(spec, hits), spec, spec.centers_of(cells), radius_m
+    )
+    plain = cell_points(masks, spec, cells, radius_m)
+    np.testing.assert_allclose(found, plain, atol=1e-9)
