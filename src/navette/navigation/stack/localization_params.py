@@ -43,6 +43,7 @@ def localization_parameters(
             "odom_frame": sim.odometry_frame,
             "world_frame": sim.odometry_frame,
             "base_link_frame": sim.base_frame,
+            "publish_status": not sim.is_corrected,
             "frequency_hz": sim.odometry_rate_hz,
             "odom0": topics.WHEEL_ODOMETRY.name,
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],

@@ -1,5 +1,6 @@
 """Each stage as a program: its robot's parameters, then its own; errors."""
 
+import math
 import re
 import sys
 import threading
@@ -132,7 +133,7 @@ def test_a_localization_alone_has_no_start() -> None:
         assert parameters(graph, "/amcl", "set_initial_pose") == [False]
     with running(graph, *"amcl --start 1 2 90 --ros-args -r __node:=here".split()):
         names = (f"initial_pose.{each}" for each in ("x", "y", "yaw"))
-        assert parameters(graph, "/here", *names) == pytest.approx([1, 2, 1.5708])
+        assert parameters(graph, "/here", *names) == pytest.approx([1, 2, math.pi / 2])
     graph.close()
 
 

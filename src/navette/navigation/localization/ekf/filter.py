@@ -77,6 +77,10 @@ class PlanarEkf:
         process_noise: (8, 8) added to the covariance per second.
         initial_covariance: (8, 8) before the first measurement.
         initial_state: (8,) before the first measurement; default 0.
+
+    Attributes:
+        squared_distance: normalised innovation squared of the last measurement; 0 for
+            the first one of an entry.
     """
 
     def __init__(
@@ -92,6 +96,7 @@ class PlanarEkf:
 
     def reset(self) -> None:
         """Return to the initial state."""
+        self.squared_distance = 0.0
         self.snapshot = FilterSnapshot(
             None, self.initial_state, self.initial_covariance, frozenset(range(SIZE))
         )
@@ -155,8 +160,9 @@ class PlanarEkf:
         weighted = np.linalg.solve(S, np.column_stack([difference, H @ prior]))
         if not np.all(np.isfinite(weighted)):
             return Fused.UNSOUND
-        squared_distance = float(difference @ weighted[:, 0])
-        if not first_seen and squared_distance > measurement.threshold**2:
+        distance = 0.0 if first_seen else float(difference @ weighted[:, 0])
+        self.squared_distance = distance
+        if distance > measurement.threshold**2:
             return Fused.REJECTED
         K = weighted[:, 1:].T
         state = state + K @ difference

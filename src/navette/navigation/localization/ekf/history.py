@@ -29,6 +29,9 @@ class OrderedEkf:
         ekf: the filter.
         history_ns: largest age of a measurement relative to the newest.
         max_gap_ns: a longer gap in the stamps means a new run.
+
+    Attributes:
+        squared_distance: normalised innovation squared of the last given measurement.
     """
 
     def __init__(self, ekf: PlanarEkf, history_ns: int, max_gap_ns: int) -> None:
@@ -38,6 +41,7 @@ class OrderedEkf:
         self._entries: list[_Entry] = []
         self._newest_of: dict[str, int] = {}
         self._set_ns: int | None = None  # stamp of the estimate when it was set
+        self.squared_distance = 0.0
 
     def reset(self) -> None:
         """Reset the filter and the history."""
@@ -71,6 +75,7 @@ class OrderedEkf:
         self._newest_of[source] = max(stamp_ns, self._newest_of.get(source, stamp_ns))
         later = self._roll_back_to(stamp_ns)
         result = self._apply(measurement)
+        self.squared_distance = self.ekf.squared_distance
         for entry in later:
             self._apply(entry.measurement)
         self._drop_old()

@@ -2,10 +2,12 @@
 
 Before the first measurement the node publishes nothing. Without measurements it
 predicts for ``sensor_timeout_s``, then stops publishing until a measurement arrives, so
-that the controller stops. Stamps are those of the measurements and never decrease.
+that the controller stops. The status is ``localized`` or ``lost``; navigation stops a
+robot that is lost. Stamps are those of the measurements and never decrease.
 After a jump in the measurements' time (a bag that loops) the filter resets.
 """
 
+import math
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -17,8 +19,13 @@ from navette.geometry.messages import transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.localization.ekf.consistency import (
+    ConsistencyMonitor,
+    FilterState,
+)
 from navette.navigation.localization.ekf.filter import Estimate, Fused, PlanarEkf
 from navette.navigation.localization.ekf.history import OrderedEkf
+from navette.navigation.localization.ekf.measurement import Measurement
 from navette.navigation.localization.ekf.messages import (
     PLANAR_POSE,
     odometry_message,
@@ -37,6 +44,8 @@ from navette.navigation.localization.ekf.sensors import (
 )
 from navette.navigation.localization.ekf.state import (
     PLANAR,
+    X,
+    Y,
     is_covariance,
     planar_covariance,
 )
@@ -49,6 +58,7 @@ from navette.runtime import (
     stamp_to_ns,
 )
 from navette.runtime.stage.path_messages import pose_of as pose_of_message
+from navette.runtime.stage.status import StatusReporter, status_output
 
 _WARNING_PERIOD_NS = 5_000_000_000
 _LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
@@ -96,6 +106,7 @@ class EkfNode(StageNode):
             "the same",
             rate_hz=30.0,
         ),
+        status_output(topics.LOCALIZATION_STATUS.name),
     )
 
     params: EkfParams
@@ -107,6 +118,7 @@ class EkfNode(StageNode):
     def __init__(self, node_name: str = "ekf", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._warned_ns: dict[str, int] = {}
+        self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._buffer = Buffer(node=self)
         # A filter in the map frame needs odom → base, which moves.
         self._listener = TransformListener(
@@ -165,6 +177,7 @@ class EkfNode(StageNode):
         given = np.asarray(msg.pose.covariance).reshape(6, 6)[PLANAR_POSE]
         usable = is_covariance(given) and given.diagonal().all()
         self._filter.set_pose(pose, given if usable else _INITIAL_COVARIANCE)
+        self._consistency.reset()
         self.get_logger().info(
             f"initial pose: ({pose.x:.2f}, {pose.y:.2f}), heading {pose.yaw:.2f} rad"
         )
@@ -183,6 +196,7 @@ class EkfNode(StageNode):
         if estimate is not None and estimate.stamp_ns > self._published_ns:
             self._published_ns = estimate.stamp_ns
             self._publish(estimate)
+            self._judge(estimate)
 
     def on_params_changed(self, old: EkfParams) -> None:
         """Apply a new rate at once; reset for any other change."""
@@ -224,6 +238,8 @@ class EkfNode(StageNode):
             round(params.history_length_s * 1e9),
             round(params.max_gap_s * 1e9),
         )
+        limit_m = params.lost_stddev_m if params.measures_position else math.inf
+        self._consistency = ConsistencyMonitor(round(params.lost_time_s * 1e9), limit_m)
         self._sensors: dict[str, FilterInput] = {
             source: KINDS[source](source, params, self) for source in params.used
         }
@@ -231,6 +247,7 @@ class EkfNode(StageNode):
 
     def _reset(self) -> None:
         self._filter.reset()
+        self._consistency.reset()
         for sensor in self._sensors.values():
             sensor.reset()
         self._is_fresh = False
@@ -249,7 +266,7 @@ class EkfNode(StageNode):
             # The sensors check their results.
             with np.errstate(all="ignore"):
                 for measurement in self._sensors[source].measurements(msg, stamp_ns):
-                    self._fused(source, stamp_ns, self._filter.step(measurement))
+                    self._fused(measurement, self._filter.step(measurement))
         except InvalidInputError as error:
             raise InvalidInputError(
                 error.reason, f"{source} not used: {error.detail}"
@@ -259,14 +276,39 @@ class EkfNode(StageNode):
                 "unknown_frame", f"{source} not used: {error}"
             ) from None
 
-    def _fused(self, source: str, stamp_ns: int, fused: Fused) -> None:
+    def _fused(self, measurement: Measurement, fused: Fused) -> None:
+        source, stamp_ns = measurement.source, measurement.stamp_ns
         if fused is not Fused.USED:
             at = f"{source} at {stamp_ns / 1e9:.3f} s"
             self._warn(source, f"{at} not used: {fused.value}")
         if fused in (Fused.USED, Fused.REJECTED):
+            distance = self._filter.squared_distance
+            entries = len(measurement.indices)
+            self._consistency.note(source, distance, entries, stamp_ns)
             self._is_fresh = True
             self._arrived_ns = self._now_ns()
             self._is_paused = False
+
+    def _judge(self, estimate: Estimate) -> None:
+        """Report whether the filter is lost."""
+        variances = np.linalg.eigvalsh(estimate.covariance[np.ix_([X, Y], [X, Y])])
+        stddev_m = math.sqrt(max(0.0, float(variances[-1])))
+        state = self._consistency.update(stddev_m, estimate.stamp_ns)
+        cause = self._consistency.cause
+        if cause and self._status.state != state and self.params.publish_status:
+            self.get_logger().warning(
+                f"lost: {cause}; navigation stops. Publish the pose on "
+                f"{topics.INITIAL_POSE.name} to help"
+            )
+        self._report(state, cause, stddev_m=stddev_m)
+
+    def _report(self, state: FilterState, cause: str = "", **details: Any) -> None:
+        if not self.params.publish_status:
+            return
+        if cause:
+            details["reason"] = cause
+        level = StatusReporter.ERROR if cause else StatusReporter.OK
+        self._status.report(state, level, cause=cause, **details)
 
     def _publish(self, estimate: Estimate) -> None:
         params = self.params
@@ -308,6 +350,8 @@ class EkfNode(StageNode):
             self.get_logger().warning(
                 "nothing is published: no measurement within sensor_timeout_s"
             )
+            if self._published_ns >= 0:
+                self._report(FilterState.LOST, "no measurement arrives")
 
     def _warn(self, about: str, text: str) -> None:
         """Log a warning at most every five seconds for each subject."""

@@ -72,6 +72,24 @@ class EkfParams(Params):
         "how long the filter predicts without a measurement; then it publishes nothing",
         above=0.0,
     )
+    publish_status: bool = param(
+        True,
+        "also publish localized or lost on /localization/status; false beside a node "
+        "that corrects the estimate, such as amcl",
+    )
+    lost_time_s: float = param(
+        3.0,
+        "the filter is lost when all measurements of a sensor contradict the estimate, "
+        "beyond 99.9 % of what the variances explain, for this time; 0: never",
+        at_least=0.0,
+        at_most=1000.0,
+    )
+    lost_stddev_m: float = param(
+        5.0,
+        "standard deviation of the position of a filter that is lost, if a sensor "
+        "measures the position (gps0, pose0)",
+        above=0.0,
+    )
     two_d_mode: bool = param(True, "always true: the filter is planar")
     publish_tf: bool = param(True, "also publish the estimate on /tf")
     map_frame: str = param("map", "frame of estimates that may jump")
@@ -170,6 +188,12 @@ class EkfParams(Params):
             return tuple(name in ("x", "y") for name in SPATIAL)
         config: tuple[bool, ...] = getattr(self, f"{source}_config")
         return config
+
+    @property
+    def measures_position(self) -> bool:
+        """Whether a sensor measures the position itself, not only motion."""
+        of_pose = self.config_of("pose0")[:2] if self.pose0 else ()
+        return bool(self.gps0) or (any(of_pose) and not self.pose0_differential)
 
     @property
     def datum(self) -> GeoPoint | None:
