@@ -1,4 +1,8 @@
-"""Inflation: cost that decreases with the distance to the nearest lethal cell."""
+"""Inflation: cost that decreases with the distance to the nearest lethal cell.
+
+Few lethal cells, as those of one scan, are stamped one by one with the costs around
+them; of many the distances are computed first.
+"""
 
 import math
 from typing import Any, Literal
@@ -16,6 +20,8 @@ from navette.navigation.grids.distance import (
     row_squares,
 )
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells
+
+_SPAN = 64  # columns of a stamp that are written at once
 
 InflationMethod = Literal["linear", "exponential"]
 
@@ -97,15 +103,64 @@ def inflate(
         raise InvalidValueError(
             f"table: {table.size} entries, must be (radius + 1)² + 1; see cost_table"
         )
+    lowest = np.int8(UNKNOWN if raise_unknown else FREE)
+    inflated = np.empty_like(cost)
+    lethal_at = np.flatnonzero(cost >= LETHAL)
+    side = 2 * radius + 1
+    if lethal_at.size * side * math.ceil(side / _SPAN) < cost.size:
+        _stamp_kernel(cost, lethal_at, table, radius, lowest, inflated)
+        return inflated
     scratch = make_scratch(cost.shape, radius)
     if scratch.radius < radius:
         table = table[: (scratch.radius + 1) ** 2 + 1].copy()
         table[-1] = UNKNOWN  # no obstacle found
     lethal = (cost >= LETHAL).view(np.uint8)
-    inflated = np.empty_like(cost)
-    lowest = np.int8(UNKNOWN if raise_unknown else FREE)
     _inflate_kernel(cost, lethal, scratch, table, lowest, inflated)
     return inflated
+
+
+@kernel
+def _stamp_kernel(
+    cost: Cells,
+    lethal_at: NDArray[np.int64],
+    table: NDArray[np.int8],
+    radius: int,
+    lowest: np.int8,
+    inflated: Cells,
+) -> None:
+    """Stamp the costs around a lethal cell on each of them; the highest counts."""
+    side = 2 * radius + 1
+    spans = (side + _SPAN - 1) // _SPAN
+    stamp = np.full((side, spans * _SPAN), np.int8(UNKNOWN))
+    for i in range(side):
+        for j in range(side):
+            square = (i - radius) ** 2 + (j - radius) ** 2
+            stamp[i, j] = table[min(square, table.size - 1)]
+    height, width = cost.shape
+    raised = np.full((height + 2 * radius, width + spans * _SPAN), np.int8(UNKNOWN))
+    for at in lethal_at:
+        _stamp(raised, stamp, at // width, at % width)
+    for r in range(height):
+        above = raised[r + radius, radius : radius + width]
+        _raise_row(cost[r], above, lowest, inflated[r])
+
+
+@kernel
+def _stamp(raised: Cells, stamp: Cells, row: int, column: int) -> None:
+    for first in range(0, stamp.shape[1], _SPAN):
+        for i in range(stamp.shape[0]):
+            for k in range(_SPAN):  # their number is known: vectorised
+                at, there = np.uintp(column + first + k), np.uintp(first + k)
+                before, new = raised[np.uintp(row + i), at], stamp[np.uintp(i), there]
+                raised[np.uintp(row + i), at] = new if new > before else before
+
+
+@kernel
+def _raise_row(cost: Cells, raised: Cells, lowest: np.int8, inflated: Cells) -> None:
+    for c in range(cost.size):
+        current = cost[c]
+        is_raised = raised[c] > current and current >= lowest
+        inflated[c] = raised[c] if is_raised else current
 
 
 @kernel
@@ -119,11 +174,11 @@ def _inflate_kernel(
 ) -> None:
     column_distances(lethal, scratch)
     for r in range(cost.shape[0]):
-        _raise_row(cost[r], table, lowest, row_squares(scratch, r), inflated[r])
+        _look_up_row(cost[r], table, lowest, row_squares(scratch, r), inflated[r])
 
 
 @kernel
-def _raise_row(
+def _look_up_row(
     cost: Cells,
     table: NDArray[np.int8],
     lowest: np.int8,

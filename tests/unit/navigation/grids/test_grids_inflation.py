@@ -8,9 +8,11 @@ from navette.errors import InvalidValueError
 from navette.navigation.grids import LETHAL, UNKNOWN, cost_table, inflate
 
 
-def some_grid(rng: np.random.Generator, shape=(80, 130)) -> np.ndarray:
+def some_grid(
+    rng: np.random.Generator, shape=(80, 130), share: float = 0.01
+) -> np.ndarray:
     cost = rng.choice([-1, 0, 30], shape).astype(np.int8)
-    cost[rng.random(shape) < 0.01] = LETHAL
+    cost[rng.random(shape) < share] = LETHAL
     return cost
 
 
@@ -43,13 +45,18 @@ def test_a_cell_beside_an_obstacle_is_never_lethal() -> None:
 
 @pytest.mark.parametrize("raise_unknown", [True, False])
 @pytest.mark.parametrize("method", ["linear", "exponential"])
-def test_inflation_equals_the_formula_on_exact_distances(method, raise_unknown) -> None:
-    cost = some_grid(np.random.default_rng(3))
-    table = cost_table(method, inflation_radius_m=0.8, resolution=0.1)
+@pytest.mark.parametrize("share", [0.0005, 0.01, 0.3])
+@pytest.mark.parametrize("radius_m", [0.05, 0.8, 3.1, 3.3, 9.0])
+def test_inflation_equals_the_formula_on_exact_distances(
+    method, raise_unknown, share, radius_m
+) -> None:
+    cost = some_grid(np.random.default_rng(3), share=share)
+    cost[0, 0] = cost[-1, -1] = LETHAL
+    table = cost_table(method, inflation_radius_m=radius_m, resolution=0.1)
     metres = 0.1 * distance_transform_edt(cost < LETHAL)
-    fall = 1 - metres / 0.8 if method == "linear" else np.exp(-3.0 * metres)
+    fall = 1 - metres / radius_m if method == "linear" else np.exp(-3.0 * metres)
     raised = np.rint(100 * fall)
-    raised[(metres > 0.8 - 1e-9) | (raised <= 0)] = UNKNOWN
+    raised[(metres > radius_m - 1e-9) | (raised <= 0)] = UNKNOWN
     raised[(cost < LETHAL) & (raised > 99)] = 99
     expected = np.maximum(cost, raised)
     if not raise_unknown:
