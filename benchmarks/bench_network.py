@@ -3,17 +3,23 @@
 The same bytes, as a sensor_msgs/Image, are sent to a second process, which returns
 them: Navette's nodes with queues, CDR and executor, decoded or as bytes (``raw=True``,
 what a recorder or a relay uses); zenoh-python, which moves bytes
-without encoding; zenoh-ros2-sdk, with the same wire format. All use Zenoh's shared
-memory. Half the time of a round trip is the latency of a message.
+without encoding, and returns them unread; zenoh-ros2-sdk, with the same wire format;
+dora-rs, whose Python nodes exchange Arrow arrays. All use shared memory. Half the time
+of a round trip is the latency of a message.
+
+dora-rs takes part if ``dora-rs`` and ``dora-rs-cli`` are installed.
 """
 
+import json
 import os
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any, ClassVar
 
 from harness import Benchmark, Figure, optional
@@ -122,11 +128,70 @@ def sdk_peer(name: str, size: int, out: str, back: str) -> Any:
     return fields, send, listen, publisher.close
 
 
+def dora_peer(name: str, size: int, out: str, back: str) -> Any:
+    import numpy as np
+    import pyarrow as pa
+    from dora import Node
+
+    node = Node(f"{name}-{size}")
+    callbacks: list[Callable[[Any], None]] = []
+
+    def receive() -> None:
+        event = node.next(timeout=PATIENCE_S)
+        if event is not None and event["type"] == "INPUT":
+            callbacks[0](event["value"])
+
+    def echo_all() -> None:
+        while True:
+            receive()
+
+    def listen(callback: Callable[[Any], None]) -> None:
+        callbacks.append(callback)
+        if name == "echo":
+            threading.Thread(target=echo_all, daemon=True).start()
+
+    def send(data: Any) -> None:
+        node.send_output(out[1:], data)
+        if name != "echo":  # without a second thread, as dora's examples
+            receive()
+
+    return pa.array(np.zeros(size, np.uint8)), send, listen, lambda: None
+
+
+def start_dataflow(size: int, stack: ExitStack) -> None:
+    """Start dora's daemon, and the dataflow that connects the two nodes."""
+    ends = {"bench": ("there", "back"), "echo": ("back", "there")}
+    other = {"bench": "echo", "echo": "bench"}
+    nodes = [
+        {
+            "id": f"{name}-{size}",
+            "path": "dynamic",
+            "inputs": {read: f"{other[name]}-{size}/{read}"},
+            "outputs": [written],
+        }
+        for name, (written, read) in ends.items()
+    ]
+    folder = stack.enter_context(tempfile.TemporaryDirectory())
+    (Path(folder) / "flow.yml").write_text(json.dumps({"nodes": nodes}))
+    quiet: dict[str, Any] = {
+        "cwd": folder,
+        "check": True,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.DEVNULL,
+    }
+    subprocess.run(["dora", "up"], **quiet)
+    stack.callback(
+        subprocess.run, ["dora", "destroy", "--force"], **{**quiet, "check": False}
+    )
+    subprocess.run(["dora", "start", "flow.yml", "--detach"], **quiet)
+
+
 PEERS = {
     "navette": navette_peer,
     "navette, bytes": navette_bytes_peer,
     "zenoh-python": zenoh_peer,
     "zenoh-ros2-sdk": sdk_peer,
+    "dora-rs": dora_peer,
 }
 
 
@@ -151,6 +216,8 @@ class Loop:
             "ROS_DOMAIN_ID": DOMAIN,
         }
         os.environ.update(common, BENCH_LISTEN=ends[0], BENCH_CONNECT=ends[1])
+        if peer == "dora-rs":
+            start_dataflow(size, stack)
         # Navette's router serves the peer as well.
         router = None
         if peer == "zenoh-ros2-sdk":
@@ -204,7 +271,11 @@ class Loop:
 
 def build(stack: ExitStack) -> Benchmark:
     bench = Benchmark("network", __doc__, budget_s=1.5)
-    modules = {"zenoh-python": "zenoh", "zenoh-ros2-sdk": "zenoh_ros2_sdk"}
+    modules = {
+        "zenoh-python": "zenoh",
+        "zenoh-ros2-sdk": "zenoh_ros2_sdk",
+        "dora-rs": "dora",
+    }
     peers = [w for w in PEERS if w not in modules or optional(modules[w])]
     for label, size in SIZES.items():
         loops = {peer: Loop(peer, size, stack) for peer in peers}

@@ -11,6 +11,7 @@ from typing import Any
 import zenoh
 
 from navette.transports.base import Endpoint, TransportObserver
+from navette.transports.zenoh.callbacks import direct
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.session_id import is_navette_session
 
@@ -58,7 +59,7 @@ class LivelinessAssertions(TransportObserver):
             if self._subscriber is None:
                 self._subscriber = self._session.declare_subscriber(
                     f"{self._prefix}/*",
-                    zenoh.handlers.Callback(self._on_sample, indirect=False),
+                    direct(self._on_sample),
                     allowed_origin=zenoh.Locality.REMOTE,
                 )
 

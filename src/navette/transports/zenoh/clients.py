@@ -13,6 +13,7 @@ from navette.transports.zenoh.attachment import (
     check_length,
     decode_attachment,
 )
+from navette.transports.zenoh.callbacks import direct
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 
 _MAX_REASON_BYTES = 2000
@@ -46,7 +47,7 @@ class ZenohClient(ClientPort):
         call = _Call(self, sequence)
         self._owner.session.zenoh.get(
             self._entity.key,
-            zenoh.handlers.Callback(call.on_reply, call.on_end, indirect=False),
+            direct(call.on_reply, call.on_end),
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
             timeout=self._owner.session.settings.service_timeout_s,

@@ -15,6 +15,7 @@ from navette.transports.lockstep import (
     parse_grant,
     parse_report,
 )
+from navette.transports.zenoh.callbacks import direct
 from navette.transports.zenoh.transport import ZenohTransport
 
 SPACE = "navette_lockstep"
@@ -98,7 +99,7 @@ class ZenohStepWire(StepWire):
         self._subscribers.append(
             self._transport.session.zenoh.declare_subscriber(
                 f"{self._space}/{kind}/*",
-                zenoh.handlers.Callback(on_sample, indirect=False),
+                direct(on_sample),
                 allowed_origin=zenoh.Locality.REMOTE,
             )
         )

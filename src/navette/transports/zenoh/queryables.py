@@ -11,6 +11,8 @@ from typing import Any
 
 import zenoh
 
+from navette.transports.zenoh.callbacks import direct
+
 Handler = Callable[[zenoh.Query], None]
 
 
@@ -84,7 +86,7 @@ class _Shared:
 def _declare(session: zenoh.Session, key: str, handler: Handler) -> Any:
     return session.declare_queryable(
         key,
-        zenoh.handlers.Callback(handler, indirect=False),
+        direct(handler),
         complete=True,
         allowed_origin=zenoh.Locality.REMOTE,
     )

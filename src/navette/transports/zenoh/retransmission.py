@@ -16,6 +16,7 @@ import zenoh
 from zenoh import ext
 
 from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
+from navette.transports.zenoh.callbacks import direct
 
 # As in rmw_zenoh: an idle publisher announces its last sequence number once.
 _HEARTBEAT_S = 0.5
@@ -87,8 +88,7 @@ def declare_subscriber(
     Args:
         on_sample: called on Zenoh's threads.
     """
-    # A direct callback: a channel would need a Python thread for each subscription.
-    handler = zenoh.handlers.Callback(on_sample, indirect=False)
+    handler = direct(on_sample)
     options: dict[str, Any] = {"allowed_origin": zenoh.Locality.REMOTE}
     if not (qos.is_latched or retransmits):
         return session.declare_subscriber(key, handler, **options)

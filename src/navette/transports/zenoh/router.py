@@ -10,6 +10,7 @@ import threading
 import zenoh
 
 from navette.errors import NetworkError
+from navette.transports.zenoh.callbacks import direct
 from navette.transports.zenoh.config import (
     client_config,
     router_config,
@@ -86,9 +87,7 @@ class RouterRole:
             target=self._take_over, name="navette-router", daemon=True
         )
         self._thread.start()
-        session.info.declare_transport_events_listener(
-            zenoh.handlers.Callback(on_event, indirect=False)
-        )
+        session.info.declare_transport_events_listener(direct(on_event))
 
     def stop_watching(self) -> None:
         """Do not take over any more; processes that end together need no new router."""
