@@ -27,6 +27,7 @@ from navette.sim import messages
 from navette.sim.description import describe_robot, describe_world
 from navette.sim.frames import RobotFrames
 from navette.sim.params import CONTROL_PERIOD_S, FIXED_AT_START, SimParams
+from navette.sim.restart import start_again
 from navette.sim.robot_state import Motion
 from navette.sim.run_control import RunControl
 from navette.sim.scene import Scene
@@ -110,6 +111,8 @@ class SimNode(StageNode):
             topics.ACTORS, "moving models of the world, as they stand", rate_hz=20
         ),
         Output.of(topics.EMERGENCY_STOP_ACTIVE, "whether the robot is stopped"),
+        Output.of(topics.CANCEL_GOAL, "after a reset by a service"),
+        Output.of(topics.INITIAL_POSE, "the start, after a reset by a service"),
         Output.of(topics.ROBOT_DESCRIPTION, "URDF of the robot"),
         Output.of(topics.WORLD_DESCRIPTION, "URDF of the world"),
     )
@@ -169,6 +172,10 @@ class SimNode(StageNode):
         self._readings.clear()
         self._origin_ns = self.get_clock().now_ns
         self._contacts_reported = 0
+
+    def _start_again(self) -> None:
+        self.reset()
+        start_again(self, self._truth(self.stamp_ns))
 
     def on_cmd_vel(self, msg: Twist | TwistStamped) -> None:
         """Apply a command; an invalid one is dropped and the last one stays."""
@@ -272,7 +279,7 @@ class SimNode(StageNode):
             clock if isinstance(clock, VirtualClock) else None,
             clock if isinstance(clock, PacedClock) else None,
             round(1e9 * CONTROL_PERIOD_S),
-            self.reset,
+            self._start_again,
         )
         for name, (kind, serve) in control.services.items():
             self.create_service(kind, f"~/{name}", serve)
@@ -395,14 +402,16 @@ class SimNode(StageNode):
         return Transform3.from_pose2(self.simulator.wheel_odometry().pose)
 
     def _publish_truth(self, stamp_ns: int) -> None:
-        message = messages.odometry_message(
+        self.hand_over(topics.GROUND_TRUTH.name, self._truth(stamp_ns))
+
+    def _truth(self, stamp_ns: int) -> Odometry:
+        return messages.odometry_message(
             stamp_ns,
             (self.params.map_frame, self.params.base_frame),
             self.simulator.pose(),
             self.simulator.motion(),
             Transform3.identity(),
         )
-        self.hand_over(topics.GROUND_TRUTH.name, message)
 
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params

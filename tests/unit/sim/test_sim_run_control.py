@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from navette.msgs.geometry_msgs.msg import Twist, Vector3
+from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped, Twist, Vector3
+from navette.msgs.nav2_msgs.srv import ClearEntireCostmap
 from navette.msgs.rosbag2_interfaces.srv import GetRate, SetRate
 from navette.msgs.simulation_interfaces.msg import Result, SimulationState
 from navette.msgs.simulation_interfaces.srv import (
@@ -14,6 +15,7 @@ from navette.msgs.simulation_interfaces.srv import (
     SetSimulationState,
     StepSimulation,
 )
+from navette.msgs.std_msgs.msg import Empty
 from navette.runtime import ContextClock, PacedClock, SystemClock, VirtualClock
 from navette.sim import Scene, load_robot, load_world
 from navette.sim.node import SimNode
@@ -115,6 +117,39 @@ def test_reset_returns_the_robot_to_its_start_and_time_continues() -> None:
     assert run.graph.now_ns == 1000 * MS
     response = run.call("reset_simulation", ResetSimulation, scope=255)
     assert response.result.result == Result.RESULT_FEATURE_UNSUPPORTED
+
+
+def test_after_a_reset_goal_estimate_and_maps_are_new() -> None:
+    run = Run()
+    seen = list[str]()
+
+    def clear(request: Any, response: Any) -> Any:
+        seen.append("cleared")
+        return response
+
+    def on_pose(msg: PoseWithCovarianceStamped) -> None:
+        seen.append("pose")
+        place = msg.pose.pose.position
+        assert (place.x, place.y) == pytest.approx(start[:2], abs=1e-3)
+        assert msg.header.frame_id == "map"
+        assert msg.pose.covariance[35] > 0.0
+
+    node = run.graph.node
+    node.create_service(ClearEntireCostmap, "/some/clear_entirely", clear)
+    node.create_subscription(
+        Empty, "/cancel_goal", lambda _: seen.append("canceled"), 10
+    )
+    node.create_subscription(PoseWithCovarianceStamped, "/initialpose", on_pose, 10)
+    start = run.pose
+    run.spin_ms(1000)
+    assert seen == []
+    run.call("reset_simulation", ResetSimulation)
+    run.spin_ms(200)
+    assert seen == ["canceled", "pose"]
+    run.spin_ms(200)
+    assert seen == ["canceled", "pose", "cleared"], "when the estimate is in use"
+    run.spin_ms(1000)
+    assert len(seen) == 3
 
 
 def test_stopped_is_paused_at_the_start() -> None:

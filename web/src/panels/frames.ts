@@ -62,7 +62,7 @@ class FramesPanel implements PanelInstance {
       const [age, place] = [h("span", { class: "frames-age number" }), h("small", { class: "frames-place number" })];
       this.#rows.set(frame, { age, place });
       const below = this.#branch(frame, children, seen);
-      return h("li", {}, h("div", { class: "frames-row" }, h("code", {}, frame), age), place, below.length > 0 && h("ul", {}, ...below));
+      return h("li", {}, h("code", { title: frame }, frame), h("div", { class: "frames-row" }, place, age), below.length > 0 && h("ul", {}, ...below));
     });
   }
 

@@ -37,6 +37,8 @@ export class PlotPanel implements PanelInstance {
   readonly #pause: HTMLButtonElement;
   readonly #live: HTMLButtonElement;
   readonly #subscriptions = new Map<string, Dispose>();
+  /** Topics of which this panel has received a message. */
+  readonly #received = new Set<string>();
   readonly #ends: Dispose[] = [];
   readonly #resize: ResizeObserver;
   #plot: uPlot | null = null;
@@ -138,6 +140,7 @@ export class PlotPanel implements PanelInstance {
       if (this.#subscriptions.has(topic)) continue;
       const end = this.context.connection.subscribe(topic, { every: true }, ({ value, stampNs }) => {
         if (this.#isPaused) return;
+        this.#received.add(topic);
         for (const curve of this.#curves) {
           if (curve.path.topic !== topic) continue;
           const number = numberAt(value, curve.path.steps);
@@ -217,7 +220,7 @@ export class PlotPanel implements PanelInstance {
 
   #whyEmpty({ path }: Curve): string {
     if (!this.context.connection.topics.get(path.topic)?.isPublished) return "not published";
-    return this.context.connection.statistics(path.topic)?.count ? "no such number" : "no message";
+    return this.#received.has(path.topic) ? "no such number" : "no message yet";
   }
 
   #setPaused(isPaused: boolean): void {

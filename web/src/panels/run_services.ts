@@ -1,14 +1,8 @@
 /** Services of a simulation: simulation_interfaces, as Navette, Gazebo and Isaac Sim serve them. */
 
 import type { Connection } from "../connection/connection";
-import { CANCEL_GOAL, INITIAL_POSE } from "../robot/names";
+import { CANCEL_GOAL } from "../robot/names";
 
-const GROUND_TRUTH = "/ground_truth";
-const CLEAR_MAP = "nav2_msgs/srv/ClearEntireCostmap";
-/** While paused no ground truth follows a reset. */
-const RELOCATE_MS = 1500;
-/** Until scans are placed by the new estimate. */
-const SETTLE_MS = 300;
 const SET_STATE = "simulation_interfaces/srv/SetSimulationState";
 const PLAYING = 1;
 const PAUSED = 2;
@@ -18,12 +12,6 @@ const ALREADY = 101;
 interface Result {
   result: number;
   error_message: string;
-}
-
-/** Of nav_msgs/Odometry. */
-interface Placed {
-  header: object;
-  pose: { pose: object };
 }
 
 export interface RunState {
@@ -62,36 +50,10 @@ export class RunServices {
     check((await this.#call<{ result: Result }>("step_simulation", { steps: BigInt(steps) })).result);
   }
 
-  /** Robot and world return to the start; the goal is dropped, maps start empty. */
+  /** Robot and world return to the start; Navette's simulation also clears estimate and maps. */
   async reset(): Promise<void> {
-    const { connection } = this;
-    connection.publish(CANCEL_GOAL, "std_msgs/msg/Empty", {});
+    this.connection.publish(CANCEL_GOAL, "std_msgs/msg/Empty", {});
     check((await this.#call<{ result: Result }>("reset_simulation", { scope: 0 })).result);
-    await this.#relocate();
-    const clearing = [...connection.services].filter(([, type]) => type === CLEAR_MAP);
-    await Promise.all(clearing.map(([name]) => connection.callService(name, {})));
-  }
-
-  /** Localisation continues from where the simulator has put the robot. */
-  async #relocate(): Promise<void> {
-    const { connection } = this;
-    if (!connection.topics.get(GROUND_TRUTH)?.isPublished) return;
-    const sinceNs = connection.nowNs;
-    await new Promise<void>((resolve) => {
-      const timer = setTimeout(end, RELOCATE_MS);
-      const off = connection.subscribe<Placed>(GROUND_TRUTH, { every: true }, ({ stampNs, value: { header, pose } }) => {
-        if (stampNs <= sinceNs) return;
-        const covariance = Array.from({ length: 36 }, () => 0);
-        covariance[0] = covariance[7] = covariance[35] = 1e-4;
-        connection.publish(INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped", { header, pose: { pose: pose.pose, covariance } });
-        clearTimeout(timer);
-        setTimeout(end, SETTLE_MS);
-      });
-      function end(): void {
-        off();
-        resolve();
-      }
-    });
   }
 
   async setRate(rate: number): Promise<void> {

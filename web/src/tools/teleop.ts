@@ -18,6 +18,11 @@ export function takesKeys(element: EventTarget | null): boolean {
   return element instanceof Element && element.closest("input, select, textarea, [contenteditable], [role=slider], [role=tab], [role=menu]") !== null;
 }
 
+/** Whether the element uses Space; a tab and a slider have other keys, and Stop comes first. */
+function takesSpace(element: EventTarget | null): boolean {
+  return takesKeys(element) && !(element as Element).matches("[role=tab], input[type=range]");
+}
+
 /** Drives while keys are held. The keydown handler publishes before anything else runs. */
 export function driveByKeys(operator: Operator): void {
   const held = new Set<string>();
@@ -32,8 +37,10 @@ export function driveByKeys(operator: Operator): void {
     update();
   };
 
-  const takes = (event: KeyboardEvent): boolean =>
-    !(takesKeys(event.target) || event.ctrlKey || event.metaKey || event.altKey) && operator.robot.driveTopic !== undefined;
+  const takes = (event: KeyboardEvent): boolean => {
+    const isTaken = event.key === " " ? takesSpace(event.target) : takesKeys(event.target);
+    return !(isTaken || event.ctrlKey || event.metaKey || event.altKey) && operator.robot.driveTopic !== undefined;
+  };
 
   addEventListener(
     "keydown",

@@ -142,7 +142,8 @@ export class Dock implements Arrangement {
   #focus(panel: IDockviewPanel): void {
     panel.api.setActive();
     if (panel.api.location.type === "edge") panel.group.api.expand();
-    this.#hosts.get(panel.id)?.element.querySelector<HTMLElement>("input, select, button")?.focus();
+    // Not a field in it: keys, such as Space for Stop, would go there.
+    this.#hosts.get(panel.id)?.element.focus({ preventScroll: true });
   }
 
   #freeId(kind: string): string {

@@ -19,7 +19,7 @@ export interface HostContext {
 
 /** One open panel, wherever it is docked. */
 export class PanelHost {
-  readonly element = h("div", { class: "panel-host" });
+  readonly element = h("div", { class: "panel-host", tabindex: "-1" });
   onTitle: (title: string) => void = () => undefined;
   #instance: PanelInstance | null = null;
   #isCreated = false;

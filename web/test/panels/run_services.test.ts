@@ -1,43 +1,21 @@
-import { afterEach, expect, test, vi } from "vitest";
+import { expect, test } from "vitest";
 import { RunServices } from "../../src/panels/run_services";
 import { FakeConnection } from "../fake_connection";
 
-const DONE = Promise.resolve({ result: { result: 1, error_message: "" } }) as Promise<never>;
-
-afterEach(() => vi.useRealTimers());
-
-test("a reset drops the goal, places the robot and clears the maps, in this order", async () => {
-  vi.useFakeTimers();
+test("a reset drops the goal first; the simulation places the robot and clears the maps", async () => {
   const connection = new FakeConnection();
   const calls: string[] = [];
-  connection.services.set("/global_costmap/clear_entirely_global_costmap", "nav2_msgs/srv/ClearEntireCostmap");
-  connection.addTopic("/ground_truth", "nav_msgs/msg/Odometry");
   connection.callService = (name) => {
     calls.push(name);
-    return DONE;
+    return Promise.resolve({ result: { result: 1, error_message: "" } }) as Promise<never>;
   };
-  connection.nowNs = 5n;
-  const done = new RunServices(connection, "/sim/").reset();
-  await vi.advanceTimersByTimeAsync(0);
+  await new RunServices(connection, "/sim/").reset();
   expect(connection.published.map(([topic]) => topic)).toEqual(["/cancel_goal"]);
-  const pose = { position: { x: 1, y: 2, z: 0 } };
-  connection.send("/ground_truth", { header: { frame_id: "map" }, pose: { pose } });
-  expect(connection.published).toHaveLength(1); // from before the reset
-  connection.nowNs = 6n;
-  connection.send("/ground_truth", { header: { frame_id: "map" }, pose: { pose } });
-  await vi.advanceTimersByTimeAsync(400);
-  await done;
-  expect(connection.published[1]).toMatchObject(["/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", { pose: { pose } }]);
-  expect(calls).toEqual(["/sim/reset_simulation", "/global_costmap/clear_entirely_global_costmap"]);
+  expect(calls).toEqual(["/sim/reset_simulation"]);
 });
 
-test("a paused simulation is reset without ground truth", async () => {
-  vi.useFakeTimers();
+test("a refused reset states the reason", async () => {
   const connection = new FakeConnection();
-  connection.addTopic("/ground_truth", "nav_msgs/msg/Odometry");
-  connection.callService = () => DONE;
-  const done = new RunServices(connection, "/sim/").reset();
-  await vi.advanceTimersByTimeAsync(2000);
-  await done;
-  expect(connection.isSubscribed("/ground_truth")).toBe(false);
+  connection.callService = () => Promise.resolve({ result: { result: 104, error_message: "not while recording" } }) as Promise<never>;
+  await expect(new RunServices(connection, "/sim/").reset()).rejects.toThrow("not while recording");
 });
