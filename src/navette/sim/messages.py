@@ -13,6 +13,7 @@ from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
     PoseWithCovariance,
+    PoseWithCovarianceStamped,
     Quaternion,
     Twist,
     TwistWithCovariance,
@@ -41,6 +42,7 @@ from navette.sim.sensor_specs import CameraSensor, ImuSensor
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
+_ESTIMATE_VARIANCE = 1e-4  # in m² and rad²
 _IDENTITY = Transform3.identity()
 _PLANAR = np.array([0, 1, 5, 6, 7, 11, 30, 31, 35])  # x, y, yaw of 6 × 6
 
@@ -84,6 +86,14 @@ def odometry_message(
         message.pose.covariance = _spatial(child.pose)
         message.twist.covariance = _spatial(child.twist)
     return message
+
+
+def estimate_of(truth: Odometry) -> PoseWithCovarianceStamped:
+    """Return the true pose as an estimate for localization."""
+    estimate = PoseWithCovarianceStamped(header=truth.header, pose=truth.pose)
+    for index in (0, 7, 35):  # x, y, yaw on the diagonal of 6 × 6
+        estimate.pose.covariance[index] = _ESTIMATE_VARIANCE
+    return estimate
 
 
 def _motion_of(base_T_child: Transform3, motion: Motion) -> Motion:

@@ -8,7 +8,7 @@ from typing import Any
 from navette.errors import InvalidInputError, ParameterError
 from navette.geometry import Pose2, Transform3
 from navette.geometry.messages import time_message, transform_message
-from navette.msgs import topics
+from navette.msgs import get_interface, topics
 from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.nav_msgs.msg import Odometry
@@ -27,7 +27,6 @@ from navette.sim import messages
 from navette.sim.description import describe_robot, describe_world
 from navette.sim.frames import RobotFrames
 from navette.sim.params import CONTROL_PERIOD_S, FIXED_AT_START, SimParams
-from navette.sim.restart import start_again
 from navette.sim.robot_state import Motion
 from navette.sim.run_control import RunControl
 from navette.sim.scene import Scene
@@ -39,6 +38,8 @@ from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
 
 _ACTORS_HZ = 20.0
+_NEW_MAP = "/slam/restart"
+_SETTLE_S = 0.3  # after a reset, until scans are placed by the new estimate
 _HEARTBEAT_S = 0.1  # steps physics and reports contacts without any subscriber
 
 
@@ -174,8 +175,30 @@ class SimNode(StageNode):
         self._contacts_reported = 0
 
     def _start_again(self) -> None:
+        """Reset, and leave no part of the run before: goal, pose estimate, maps.
+
+        SLAM, which ignores estimates in a map that it makes, begins a new map.
+        """
         self.reset()
-        start_again(self, self._truth(self.stamp_ns))
+        self.publish(topics.CANCEL_GOAL.name, Empty())
+        estimate = messages.estimate_of(self._truth(self.stamp_ns))
+        self.publish(topics.INITIAL_POSE.name, estimate)
+        self._call("std_srvs/srv/Empty", _NEW_MAP)
+
+        def clear() -> None:
+            self.destroy_timer(timer)
+            self._call("nav2_msgs/srv/ClearEntireCostmap")
+
+        timer = self.create_timer(_SETTLE_S, clear)
+
+    def _call(self, kind: str, only: str = "") -> None:
+        """Call the services of a type; nothing waits for the responses."""
+        service: Any = get_interface(kind)
+        for name, types in self.get_service_names_and_types():
+            if kind in types and only in ("", name):
+                client = self.create_client(service, name)
+                done = client.call_async(service.Request())
+                done.add_done_callback(partial(_destroy, self, client))
 
     def on_cmd_vel(self, msg: Twist | TwistStamped) -> None:
         """Apply a command; an invalid one is dropped and the last one stays."""
@@ -438,3 +461,7 @@ class SimNode(StageNode):
         poses = self.simulator.actors.poses(self.simulator.now_ns)
         message = messages.actors_message(poses, stamp_ns, self.params.map_frame)
         self.publish(topics.ACTORS.name, message)
+
+
+def _destroy(node: StageNode, client: Any, _response: object) -> None:
+    node.destroy_client(client)

@@ -22,6 +22,7 @@ from navette.msgs.nav2_msgs.srv import SaveMap
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMsg
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_srvs.srv import Empty as EmptySrv
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import grid_to_message, upward_of
 from navette.navigation.servers.lifecycle import StageLifecycle
@@ -95,6 +96,7 @@ class SlamNode(StageNode):
         self._start()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
         self.create_service(SaveMap, "slam/save_map", self.on_save_map)
+        self.create_service(EmptySrv, "slam/restart", self.on_restart)
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Place the robot in the known map."""
@@ -157,6 +159,11 @@ class SlamNode(StageNode):
     def on_time_jump(self) -> None:
         """Begin a new map."""
         self._start()
+
+    def on_restart(self, request: Any, response: Any) -> Any:
+        """Begin a new map: the robot stands at its start again."""
+        self._start()
+        return response
 
     def _start(self) -> None:
         params = self.params

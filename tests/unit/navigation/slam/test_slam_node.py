@@ -15,6 +15,7 @@ from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.nav2_msgs.srv import SaveMap
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_srvs.srv import Empty as EmptySrv
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.slam.node import SlamNode
 from navette.runtime import DurabilityPolicy, Parameter, QoSProfile
@@ -229,3 +230,27 @@ def test_an_initial_pose_places_the_robot_in_a_known_map(tmp_path: Path) -> None
 def test_localization_needs_a_map() -> None:
     with GraphHarness() as graph, pytest.raises(ParameterError, match="known_map"):
         start(graph, mode="localization")
+
+
+def test_after_a_restart_the_map_begins_at_the_start_again() -> None:
+    with GraphHarness() as graph:
+        start(graph, start_x_m=1.5, start_y_m=1.5, map_period_s=0.5)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        feed(graph, STEPS)
+        assert poses(found)[-1].distance_to(STEPS[-1].truth) < 0.03
+        maps = graph.collect("/slam/map", "nav_msgs/msg/OccupancyGrid", latched=True)
+        graph.run_for(1.0)
+        graph.call(EmptySrv, "slam/restart", EmptySrv.Request())
+        before = found.count
+        again = [
+            step._replace(stamp_ns=STEPS[-1].stamp_ns + (index + 1) * 200_000_000)
+            for index, step in enumerate(STEPS[:5])
+        ]
+        feed(graph, again)
+        graph.run_for(1.0)
+        assert found.count == before + 5
+        assert poses(found)[before].distance_to(STEPS[0].truth) < 0.03
+        first, last = (
+            int((np.asarray(maps.messages[index].data) >= 0).sum()) for index in (0, -1)
+        )
+        assert last < first
