@@ -343,7 +343,7 @@ class SimNode(StageNode):
         frame = self.frames.of_sensor(topic.link, sensor)
         # With the noise of the parameters, which the message states.
         used = self.simulator.devices[type(sensor)][topic.index].sensor
-        self.publish(topic.name, output.message(reading, used, stamp_ns, frame))
+        self.hand_over(topic.name, output.message(reading, used, stamp_ns, frame))
 
     def _reading(self, kind: type[Sensor], index: int, stamp_ns: int) -> Any:
         """Measure, at most once at a time."""

@@ -253,7 +253,8 @@ class Mppi:
         weight = np.exp((costs.min() - costs) / np.float32(self._temperature))
         weight /= weight.sum()
         # Within the limits: a mean of candidates that are.
-        self._commands = candidates @ weight
+        shape = self._commands.shape
+        self._commands = (candidates.reshape(-1, len(weight)) @ weight).reshape(shape)
 
     def _first_command(self) -> VelocityCommand:
         first = [float(value) for value in self._commands[0]]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry import ACKERMANN, Footprint, Pose2, advanced
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import TurnParts
@@ -15,7 +16,6 @@ from navette.navigation.control.follower import (
     BLOCKED_SCALE,
     BaseFollower,
     TrackingErrors,
-    nearest_index,
 )
 from navette.navigation.control.limits import (
     STOP,
@@ -280,14 +280,8 @@ class PredictiveFollower(BaseFollower):
     def _advance(self, path: PathWindow, pose: Pose2) -> None:
         """Move to the pose of the path nearest to the robot; never back."""
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
-
-        def distances(near: slice) -> NDArray[np.float64]:
-            away = np.hypot(pose.x - path.x[near], pose.y - path.y[near])
-            cosine = c * path.cos[near] + s * path.sin[near]
-            error = np.arccos(np.clip(cosine, -1, 1))
-            return np.asarray(away + METRES_PER_RADIAN * error)
-
-        self._at = at = nearest_index(path.measure, self._at, _SEARCH_M, distances)
+        here = pose.x, pose.y, c, s
+        self._at = at = _nearest_index(path, self._at, _SEARCH_M, here)
         dx, dy = pose.x - float(path.x[at]), pose.y - float(path.y[at])
         path_c, path_s = float(path.cos[at]), float(path.sin[at])
         self._cross_track = math.copysign(math.hypot(dx, dy), path_c * dy - path_s * dx)
@@ -347,6 +341,31 @@ def evasive(params: ControlParams) -> ControlParams:
         turn_acceleration_radps2=factor * params.turn_acceleration_radps2,
         lateral_acceleration_mps2=factor * params.lateral_acceleration_mps2,
     )
+
+
+@kernel
+def _nearest_index(
+    path: PathWindow, at: int, ahead_m: float, pose: tuple[float, float, float, float]
+) -> int:
+    """Return the index of the pose nearest to x, y, cos, sin, as for other followers.
+
+    See :func:`navette.navigation.control.follower.nearest_index`.
+    """
+    x, y, c, s = pose
+    count = path.measure.size
+    while True:
+        limit = path.measure[at] + ahead_m
+        best, least, i = at, np.inf, at
+        while i == at or (i < count and path.measure[i] < limit):
+            cosine = min(1.0, max(-1.0, c * path.cos[i] + s * path.sin[i]))
+            away = math.hypot(x - path.x[i], y - path.y[i])
+            there = away + METRES_PER_RADIAN * math.acos(cosine)
+            if there < least:
+                best, least = i, there
+            i += 1
+        if best == at or best + 1 < i:
+            return best
+        at = best
 
 
 def _window(poses: NDArray[np.float64]) -> PathWindow:

@@ -67,6 +67,7 @@ class StallMonitor:
         self._lagging = _REST
         #: Commands of the last seconds, the oldest first.
         self._given: deque[tuple[float, _Motion]] = deque()
+        self._given_s = 0.0
 
     def update(
         self, command: Sequence[float], pose: Pose2, measured: Sequence[float],
@@ -130,9 +131,11 @@ class StallMonitor:
     ) -> _Motion:
         """Return the part of a motion that was commanded during the whole delay."""
         self._given.append((dt, given))
-        span_s = sum(each for each, _ in self._given)
-        while len(self._given) > 1 and span_s - self._given[0][0] >= _LONGEST_DELAY_S:
-            span_s -= self._given.popleft()[0]
+        self._given_s += dt
+        while len(self._given) > 1:
+            if self._given_s - self._given[0][0] < _LONGEST_DELAY_S:
+                break
+            self._given_s -= self._given.popleft()[0]
         left_s = min(delay_s, _LONGEST_DELAY_S)
         for each_s, motion in reversed(self._given):
             if left_s <= 0.0:

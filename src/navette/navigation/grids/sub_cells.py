@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec, grid_frame
+from navette.navigation.grids.spec import LETHAL, Cells, GridSpec, grid_frame
 from navette.navigation.grids.windows import CellWindow
 
 SUB_CELLS = 8
@@ -258,23 +258,12 @@ def _cell_points(
     return points
 
 
-@kernel
-def _lethal_marked(masks: Any, cells: Any, window: Any) -> Any:
+def _lethal_marked(masks: Masks, cells: Cells, window: CellWindow) -> NDArray[np.int64]:
     """Return the lethal cells (M, 2) of a window that have marked points."""
-    found = np.empty((64, 2), np.int64)
-    count = 0
-    for row in range(window.first_row, window.last_row):
-        line = cells[row, window.first_column : window.last_column]
-        highest = np.int8(FREE)
-        for k in range(line.size):
-            highest = max(highest, line[k])
-        if highest < LETHAL:
-            continue
-        for k in range(line.size):
-            if line[k] < LETHAL or masks[row, window.first_column + k] == 0:
-                continue
-            if count == found.shape[0]:
-                found = np.concatenate((found, np.empty_like(found)))
-            found[count, 0], found[count, 1] = row, window.first_column + k
-            count += 1
-    return found[:count].copy()
+    part = cells[window.slices]
+    lethal_at = np.flatnonzero(part >= LETHAL)
+    rows, columns = np.divmod(lethal_at, max(part.shape[1], 1))
+    rows += window.first_row
+    columns += window.first_column
+    is_marked = masks[rows, columns] != 0
+    return np.column_stack([rows[is_marked], columns[is_marked]])

@@ -5,11 +5,19 @@ import math
 import numpy as np
 import pytest
 from control_plant import Plant, big_robot, run, tangent_path
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
+from navette.navigation.control.follower import nearest_index
 from navette.navigation.control.limits import STOP, SpeedCap
-from navette.navigation.control.predictive_follower import PredictiveFollower
+from navette.navigation.control.predictive_follower import (
+    PredictiveFollower,
+    _nearest_index,
+    _window,
+)
+from navette.navigation.control.rollouts import METRES_PER_RADIAN
 
 PATHS = {
     "straight": np.array([[0, 0], [10, 0.0]]),
@@ -207,3 +215,24 @@ def test_without_a_path_there_are_no_rollouts() -> None:
     robot.set_path(np.empty((0, 3)))
     run(robot, plant, 0.2)
     assert robot.rollouts(5) is None
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 100_000))
+def test_the_nearest_pose_is_that_of_other_followers(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    poses = np.cumsum(rng.normal(0, 0.1, (int(rng.integers(1, 60)), 3)), axis=0)
+    if rng.random() < 0.3:
+        poses[len(poses) // 2 :, :2] = poses[len(poses) // 2, :2]  # turn in place
+    path = _window(poses)
+    x, y, yaw = rng.normal(0, 0.5, 3).tolist()
+    c, s = math.cos(yaw), math.sin(yaw)
+    at, ahead_m = int(rng.integers(0, len(poses))), float(rng.choice([0.1, 0.5, 2.0]))
+
+    def distances(near: slice) -> np.ndarray:
+        away = np.hypot(x - path.x[near], y - path.y[near])
+        cosine = np.clip(c * path.cos[near] + s * path.sin[near], -1, 1)
+        return np.asarray(away + METRES_PER_RADIAN * np.arccos(cosine))
+
+    plain = nearest_index(path.measure, at, ahead_m, distances)
+    assert _nearest_index(path, at, ahead_m, (x, y, c, s)) == plain
