@@ -134,42 +134,63 @@ def test_an_unknown_start_is_found_before_the_robot_drives(tmp_path: Path) -> No
     assert found.final_m < 0.15
 
 
-def test_a_wrong_initial_pose_is_corrected(tmp_path: Path) -> None:
-    found = drive(
-        tmp_path,
-        **{"initial_pose.x": -1.5, "initial_pose.y": 0.5, "initial_pose.yaw": 1.0},
-    )
+@pytest.mark.parametrize(
+    "given", [(-1.5, 0.5, 1.0), (4.0, 3.0, 2.0), (-4.0, -2.0, 3.14)]
+)
+def test_a_wrong_initial_pose_is_corrected(
+    tmp_path: Path, given: tuple[float, float, float]
+) -> None:
+    names = (f"initial_pose.{each}" for each in ("x", "y", "yaw"))
+    found = drive(tmp_path, **dict(zip(names, given, strict=True)))
     assert (found.result, found.contacts) == ("reached", 0)
     assert "lost" in found.planner
     assert found.final_m < 0.15
 
 
-def carry(simulation: Simulation) -> None:
-    """Move the robot to the other room; its wheels do not turn."""
-    pose = Transform3.from_pose2(Pose2(2.0, 2.5, -2.0), z=0.07)
-    simulation.sim.simulator.state.place(pose)
+def carry(pose: Pose2) -> Callable[[Simulation], None]:
+    """Move the robot; its wheels do not turn."""
+
+    def move(simulation: Simulation) -> None:
+        simulation.sim.simulator.state.place(Transform3.from_pose2(pose, z=0.07))
+
+    return move
 
 
-def test_a_carried_robot_is_found(tmp_path: Path) -> None:
-    found = drive(tmp_path, carry)
+@pytest.mark.parametrize(
+    "pose", [Pose2(2.0, 2.5, -2.0), Pose2(4.5, -3.0, 1.0), Pose2(-5.0, 3.0, 0.0)]
+)
+def test_a_carried_robot_is_lost_and_found(tmp_path: Path, pose: Pose2) -> None:
+    found = drive(tmp_path, carry(pose))
     assert (found.result, found.contacts) == ("reached", 0)
     assert found.worst_m > 1.0
+    assert {"lost", "localizing"} & set(found.localization[2:])
+    assert {"lost", "localizing"} & set(found.planner[3:])
     assert found.final_m < 0.15
 
 
-def jump(simulation: Simulation) -> None:
+def jump(by: Pose2) -> Callable[[Simulation], None]:
     """Shift the odometry, as a fault of an encoder or a restarted filter does."""
-    (ekf,) = (node for node in simulation.context.nodes if node.get_name() == "ekf")
-    pose = ekf._filter.ekf.estimate_at(ekf._filter.ekf.stamp_ns)
-    x, y, yaw = pose.state[:3].tolist()
-    shifted = Pose2(x, y, yaw) @ Pose2(0.7, 0.3, 0.4)
-    ekf._filter.set_pose(shifted, np.eye(3) * 1e-6)
+
+    def shift(simulation: Simulation) -> None:
+        (ekf,) = (node for node in simulation.context.nodes if node.get_name() == "ekf")
+        pose = ekf._filter.ekf.estimate_at(ekf._filter.ekf.stamp_ns)
+        x, y, yaw = pose.state[:3].tolist()
+        ekf._filter.set_pose(Pose2(x, y, yaw) @ by, np.eye(3) * 1e-6)
+
+    return shift
 
 
-def test_a_jump_of_the_odometry_is_corrected(tmp_path: Path) -> None:
-    found = drive(tmp_path, jump)
+@pytest.mark.parametrize(
+    "by", [Pose2(0.7, 0.3, 0.4), Pose2(2.0, 1.0, 1.5), Pose2(-3.0, 2.0, 3.0)]
+)
+def test_a_jump_of_the_odometry_does_not_move_the_estimate(
+    tmp_path: Path, by: Pose2
+) -> None:
+    """The last one ends at the mirror image of the pose, which fits the map, too."""
+    found = drive(tmp_path, jump(by))
     assert (found.result, found.contacts) == ("reached", 0)
-    assert found.final_m < 0.15
+    assert found.worst_m < 0.15
+    assert found.localization[-1] == "localized"
 
 
 def blind(simulation: Simulation) -> None:

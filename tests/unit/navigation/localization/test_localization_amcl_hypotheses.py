@@ -87,3 +87,19 @@ def test_a_given_pose_decides() -> None:
     localizer.set_pose(AHEAD[0], default_covariance(localizer.params))
     found = drive(localizer, cells, AHEAD)
     assert found[-1].state is LocalizationState.LOCALIZED
+
+
+def test_a_pose_in_the_wrong_room_is_doubted_once_the_scans_tell_them_apart() -> None:
+    """The given pose is in the first room; the locker is in the second one."""
+    cells = twin_rooms(mark=True)
+    localizer = MapLocalizer(AmclParams(seed=2), cells, SPEC)
+    wrong = Pose2(AHEAD[0].x - 5.0, AHEAD[0].y, AHEAD[0].yaw)
+    localizer.set_pose(wrong, default_covariance(AmclParams()))
+    seen = drive(localizer, cells, [*AHEAD, *TURN, *TURN[::-1], *AHEAD[::-1]])
+    states = [each.state for each in seen]
+    assert states[10] is LocalizationState.LOCALIZED
+    assert LocalizationState.LOCALIZING in states[10:]
+    assert states[-1] is LocalizationState.LOCALIZED
+    last = seen[-1].map_T_odom
+    assert last is not None
+    assert (last @ AHEAD[0]).distance_to(AHEAD[0]) < 0.3

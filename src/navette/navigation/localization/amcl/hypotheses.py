@@ -55,6 +55,12 @@ class RecentScans:
                 return
         self._kept.append(_Seen(points, odom_T_base))
 
+    def move_odometry(self, new_T_old: Pose2) -> None:
+        """Place the scans in the odometry's frame after a jump."""
+        kept = [_Seen(each.points, new_T_old @ each.odom_T_base) for each in self._kept]
+        self._kept.clear()
+        self._kept.extend(kept)
+
     def seen_from(self, points: Points, odom_T_base: Pose2) -> Points:
         """Return the points of the kept scans and of this one in its base frame."""
         base_T_odom = odom_T_base.inverse()

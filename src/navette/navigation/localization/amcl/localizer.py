@@ -19,6 +19,7 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Points,
 )
 from navette.navigation.localization.amcl.messages import thinned
+from navette.navigation.localization.amcl.odometry_jumps import OdometryJumps
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.localization.amcl.particle_filter import ParticleFilter
 
@@ -28,6 +29,11 @@ _REST_UPDATE_NS = 1_000_000_000
 _SEARCH_NS = 1_000_000_000
 # Period of comparisons with all places of the map before it counts as localized.
 _COMPARE_NS = 500_000_000
+# Period of checks of a robot that is localized; the mean log likelihood of a beam from
+# which its pose needs no comparison, and by which another place is clearly better. That
+# of a right pose is about -0.03, with a third of the beams at unknown things -0.7.
+_VERIFY_NS = 2_000_000_000
+_GOOD_FIT, _BETTER_FIT = -0.1, 0.1
 _SAME_M = 0.5  # distance below which two estimates are of one place
 _FARTHEST_M = 1e6  # of a standard deviation
 _LOST_SHARE = 0.5  # of the particles that such a search replaces
@@ -92,6 +98,7 @@ class MapLocalizer:
         self.filter = ParticleFilter(params, field, np.random.default_rng(params.seed))
         self.confidence = ConfidenceMonitor(params)
         self._updated: ScanView | None = None  # scan of the last update
+        self._jumps = OdometryJumps()
         self._searched_ns = -_SEARCH_NS
         self._map_T_odom: Pose2 | None = None
         self._is_given = False  # the pose, and no scan has contradicted it yet
@@ -122,6 +129,7 @@ class MapLocalizer:
 
     def step(self, scan: ScanView) -> Located:
         """Use a scan."""
+        self._follow_jump(scan)
         used = thinned(scan.points, self.params.max_beams)
         if self.confidence.state is LocalizationState.LOST:
             self._recent.clear()  # it may have been carried
@@ -139,6 +147,19 @@ class MapLocalizer:
             self._updated = scan
             self.filter.update(used)
         return self._report(scan, is_updated=True)
+
+    def _follow_jump(self, scan: ScanView) -> None:
+        """Keep the pose if the odometry jumps: the robot does not."""
+        new_T_old = self._jumps.step(scan.odom_T_base, scan.stamp_ns)
+        if new_T_old is None:
+            return
+        self._recent.move_odometry(new_T_old)
+        before = self._updated
+        if before is not None:
+            odom_T_base = new_T_old @ before.odom_T_base
+            self._updated = ScanView(before.points, odom_T_base, before.stamp_ns)
+        if self._map_T_odom is not None:
+            self._map_T_odom = self._map_T_odom @ new_T_old.inverse()
 
     def _is_due(self, scan: ScanView) -> bool:
         before = self._updated
@@ -164,7 +185,9 @@ class MapLocalizer:
             match, estimate.stddev_m, estimate.share, scan.stamp_ns
         )
         localized = LocalizationState.LOCALIZED
-        if state is localized and before is not localized and not self._is_given:
+        if state is localized and before is localized and is_updated:
+            state = self._verify(scan, pose)
+        elif state is localized and before is not localized and not self._is_given:
             state = self._compare(scan, pose)
         is_new = is_updated or before is not localized
         if (state is localized and is_new) or (self._is_given and is_updated):
@@ -195,6 +218,37 @@ class MapLocalizer:
             self.filter.spread_over(found)
             self._updated = scan
             self.confidence.doubt()
+        return self.confidence.state
+
+    def _verify(self, scan: ScanView, pose: Pose2) -> LocalizationState:
+        """Return localized unless the pose jumps or fits worse than another place.
+
+        Scans along the path that fit the map well need no search of the map.
+        """
+        if self._map_T_odom is not None:
+            expected = self._map_T_odom @ scan.odom_T_base
+            if expected.distance_to(pose) > _SAME_M:
+                return self._doubt()
+        if 0 <= scan.stamp_ns - self._compared_ns < _VERIFY_NS:
+            return self.confidence.state
+        self._compared_ns = scan.stamp_ns
+        used = thinned(scan.points, self.params.max_beams)
+        points = self._recent.seen_from(used, scan.odom_T_base)
+        fit = self.filter.fit(pose, points)
+        if fit > _GOOD_FIT:
+            return self.confidence.state
+        found = self.filter.hypotheses(pose, points)
+        best = Pose2(*found.poses[0].tolist())
+        if best.distance_to(pose) > _SAME_M and found.scores[0] > fit + _BETTER_FIT:
+            self.filter.spread_over(found)
+            self._updated = scan
+            return self._doubt()
+        return self.confidence.state
+
+    def _doubt(self) -> LocalizationState:
+        self.confidence.doubt()
+        self._is_given = False
+        self._compared_ns = -_COMPARE_NS
         return self.confidence.state
 
     def _search(self, scan: ScanView) -> None:

@@ -125,6 +125,10 @@ class ParticleFilter:
         within_m = max(2.0 * self.params.sigma_hit, 1.5 * self._field.spec.resolution)
         return self._field.share_within(np.array(pose), points, within_m)
 
+    def fit(self, pose: Pose2, points: Points) -> float:
+        """Return the mean log likelihood of points (M, 2), base, seen from a pose."""
+        return float(self._field.refined(np.array([pose]), points, 0.1, 0.05)[1][0])
+
     def recover(self, points: Points, share: float) -> None:
         """Replace a share of the particles by candidates of a search of the map."""
         found = search_map(self._field, points)
