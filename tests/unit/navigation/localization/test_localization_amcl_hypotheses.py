@@ -89,7 +89,7 @@ def test_a_given_pose_decides() -> None:
     assert found[-1].state is LocalizationState.LOCALIZED
 
 
-def test_a_pose_in_the_wrong_room_is_doubted_once_the_scans_tell_them_apart() -> None:
+def test_a_pose_in_the_wrong_room_is_doubted_once_the_scans_differ() -> None:
     """The given pose is in the first room; the locker is in the second one."""
     cells = twin_rooms(mark=True)
     localizer = MapLocalizer(AmclParams(seed=2), cells, SPEC)
