@@ -3,11 +3,12 @@
     python tests/conformance/upstream.py FOLDER… [--suite NAME] [--failures FILE]
 
 Each FOLDER is a checkout (branch jazzy) of ros2/launch, ros2/launch_ros,
-ros2/message_filters, ros2/rosidl_runtime_py or ros2/rcl_interfaces (which has values of
-messages for the former); the suites import osrf-pycommon from PyPI. Prints a line for
-each suite: tests that pass, tests that fail for a reason listed in
-``upstream_failures.toml``, and others. Exits with 1 where a test fails without a listed
-reason, or passes although it is listed. None of the suites is part of this repository.
+ros2/message_filters, ros2/rosidl_runtime_py, ros2/rcl_interfaces (which has values of
+messages for the former) or ros2/demos (whose nodes launch_ros starts); the suites
+import osrf-pycommon from PyPI. Prints a line for each suite: tests that pass, tests
+that fail for a reason listed in ``upstream_failures.toml``, and others. Exits with 1
+where a test fails without a listed reason, or passes although it is listed. None of the
+suites is part of this repository.
 """
 
 # ruff: noqa: T201 - it prints a report
@@ -34,6 +35,8 @@ SUITES = {
 }
 #: In a checkout of ros2/rcl_interfaces: values of messages, for rosidl_runtime_py.
 _FIXTURES = Path("test_msgs/src")
+#: Python packages in place of C++ packages whose components the tests load.
+STAND_INS = Path(__file__).with_name("stand_ins")
 LINTERS = ("copyright", "flake8", "pep257", "mypy", "xmllint")
 #: Seconds a test may take, and a suite.
 TEST_TIMEOUT_S, SUITE_TIMEOUT_S = 60, 900
@@ -69,11 +72,12 @@ def _contains(folder: Path, package: str) -> bool:
     return ElementTree.parse(manifest).findtext("name") == package
 
 
-def run_suite(folder: Path, search: list[Path]) -> Outcome:
+def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome:
     """Run the tests of one folder in a pytest of their own.
 
     Args:
         search: folders of modules that the tests import.
+        packages: folders of packages that the tests launch.
     """
     with tempfile.TemporaryDirectory(prefix="navette_upstream_") as scratch:
         report = Path(scratch) / "report.xml"
@@ -91,9 +95,16 @@ def run_suite(folder: Path, search: list[Path]) -> Outcome:
             cwd=folder,
             env=os.environ
             | {
-                "PYTHONPATH": os.pathsep.join(map(str, [folder.parent, *search])),
+                "PYTHONPATH": os.pathsep.join(
+                    map(str, [folder.parent, STAND_INS, *search])
+                ),
+                "NAVETTE_PATH": os.pathsep.join(map(str, packages)),
                 "PYTHONDONTWRITEBYTECODE": "1",
                 "ROS_LOG_DIR": scratch,
+                # The tests' nodes and processes meet, and no others.
+                "NAVETTE_TRANSPORT": "zenoh",
+                "ROS_DOMAIN_ID": str(100 + os.getpid() % 100),
+                "NAVETTE_RUNTIME_DIR": scratch,
             },
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -141,15 +152,17 @@ def main() -> int:
     )
     options = parser.parse_args()
     reasons = tomllib.loads(REASONS.read_text(encoding="utf-8"))
-    suites = find_suites([folder.resolve() for folder in options.folders])
+    folders = [folder.resolve() for folder in options.folders]
+    suites = find_suites(folders)
     if not suites:
         parser.error(f"no suite in {', '.join(map(str, options.folders))}")
     differences, tracebacks = [], []
-    extra = [each.resolve() / _FIXTURES for each in options.folders]
+    extra = [each / _FIXTURES for each in folders]
     for name, folder in suites.items():
         if options.suite and name not in options.suite:
             continue
-        outcome = run_suite(folder, [each for each in extra if each.is_dir()])
+        found = [each for each in extra if each.is_dir()]
+        outcome = run_suite(folder, found, folders)
         differences += report_suite(name, outcome, reasons.get(name, {}))
         tracebacks += [f"=== {test}\n{text}" for test, text in outcome.failed.items()]
     if options.failures:

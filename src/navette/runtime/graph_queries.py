@@ -16,7 +16,7 @@ class GraphQueries:
     def __init__(self, graph: Graph, loop: EventLoop, remapper: NodeRemapper) -> None:
         self._node_graph = graph
         self._node_loop = loop
-        self._remapper = remapper
+        self._node_remapper = remapper
 
     def get_node_names(self) -> list[str]:
         return [info.name for info in self._node_graph.nodes()]
@@ -39,12 +39,12 @@ class GraphQueries:
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        return self._by_node(EndpointKind.PUBLISHER, node_name, node_namespace)
+        return self._node_by_node(EndpointKind.PUBLISHER, node_name, node_namespace)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        return self._by_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
+        return self._node_by_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         return list(self._node_graph.services().items())
@@ -52,47 +52,47 @@ class GraphQueries:
     def get_service_names_and_types_by_node(
         self, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        return self._by_node(EndpointKind.SERVICE, node_name, node_namespace)
+        return self._node_by_node(EndpointKind.SERVICE, node_name, node_namespace)
 
     def get_client_names_and_types_by_node(
         self, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        return self._by_node(EndpointKind.CLIENT, node_name, node_namespace)
+        return self._node_by_node(EndpointKind.CLIENT, node_name, node_namespace)
 
     def count_services(self, service_name: str) -> int:
-        return len(self._on_service(EndpointKind.SERVICE, service_name))
+        return len(self._node_on_service(EndpointKind.SERVICE, service_name))
 
     def count_clients(self, service_name: str) -> int:
-        return len(self._on_service(EndpointKind.CLIENT, service_name))
+        return len(self._node_on_service(EndpointKind.CLIENT, service_name))
 
     def count_publishers(self, topic_name: str) -> int:
-        return len(self._on_topic(EndpointKind.PUBLISHER, topic_name))
+        return len(self._node_on_topic(EndpointKind.PUBLISHER, topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
-        return len(self._on_topic(EndpointKind.SUBSCRIPTION, topic_name))
+        return len(self._node_on_topic(EndpointKind.SUBSCRIPTION, topic_name))
 
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        found = self._on_topic(EndpointKind.PUBLISHER, topic_name)
+        found = self._node_on_topic(EndpointKind.PUBLISHER, topic_name)
         return [TopicEndpointInfo.of(endpoint) for endpoint in found]
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        found = self._on_topic(EndpointKind.SUBSCRIPTION, topic_name)
+        found = self._node_on_topic(EndpointKind.SUBSCRIPTION, topic_name)
         return [TopicEndpointInfo.of(endpoint) for endpoint in found]
 
     def get_servers_info_by_service(
         self, service_name: str, no_mangle: bool = False
     ) -> list[ServiceEndpointInfo]:
-        found = self._on_service(EndpointKind.SERVICE, service_name)
+        found = self._node_on_service(EndpointKind.SERVICE, service_name)
         return [ServiceEndpointInfo.of(endpoint) for endpoint in found]
 
     def get_clients_info_by_service(
         self, service_name: str, no_mangle: bool = False
     ) -> list[ServiceEndpointInfo]:
-        found = self._on_service(EndpointKind.CLIENT, service_name)
+        found = self._node_on_service(EndpointKind.CLIENT, service_name)
         return [ServiceEndpointInfo.of(endpoint) for endpoint in found]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
@@ -107,21 +107,23 @@ class GraphQueries:
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the full name after expansion and remapping."""
-        return self._remapper.resolve(topic, only_expand=only_expand)
+        return self._node_remapper.resolve(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """Return the full name after expansion and remapping."""
-        return self._remapper.resolve(service, is_service=True, only_expand=only_expand)
+        return self._node_remapper.resolve(
+            service, is_service=True, only_expand=only_expand
+        )
 
-    def _on_topic(self, kind: EndpointKind, topic_name: str) -> list[Endpoint]:
+    def _node_on_topic(self, kind: EndpointKind, topic_name: str) -> list[Endpoint]:
         topic = self.resolve_topic_name(topic_name)
         return self._node_graph.endpoints(topic, kind=kind)
 
-    def _on_service(self, kind: EndpointKind, service_name: str) -> list[Endpoint]:
+    def _node_on_service(self, kind: EndpointKind, service_name: str) -> list[Endpoint]:
         service = self.resolve_service_name(service_name)
         return self._node_graph.service_endpoints(service, kind=kind)
 
-    def _by_node(
+    def _node_by_node(
         self, kind: EndpointKind, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
         full_name = full_node_name(node_name, normalize_namespace(node_namespace))

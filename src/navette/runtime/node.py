@@ -109,7 +109,7 @@ class Node(HasHandle, GraphQueries, NodeParameters):
         remapper = _node_remapper(node_name, namespace or "", [*local.remaps, *remaps])
         GraphQueries.__init__(self, self._context.graph, self._context.loop, remapper)
         self._node_entities = entities = NodeEntities(self._context, remapper)
-        self._executor: Any = None
+        self._node_executor: Any = None
         self._clock = ROSClock(context=self._context)
         logger_name = entities.full_name.strip("/").replace("/", ".")
         self._logger = Logger(logger_name, self._context.log)
@@ -122,47 +122,49 @@ class Node(HasHandle, GraphQueries, NodeParameters):
                 local,
                 parameter_overrides or (),
             ),
-            self._publish_changes,
+            self._node_publish_changes,
             allow_undeclared=allow_undeclared_parameters,
         )
         self._node_topics = NodeTopics(entities, self, self._logger)
         self._node_services = NodeServices(entities, self._node_topics)
-        self._rosout_sink: RosoutSink | None = None
-        self._info = NodeInfo(
+        self._node_rosout_sink: RosoutSink | None = None
+        self._node_info = NodeInfo(
             remapper.node_name, remapper.namespace, self._context.arguments.enclave
         )
-        self._join_graph()
+        self._node_join_graph()
         try:
             if enable_rosout and self._context.arguments.enable_rosout:
-                self._open_rosout()
-            self._parameter_events = self._node_topics.create_publisher(
+                self._node_open_rosout()
+            self._node_parameter_events = self._node_topics.create_publisher(
                 ParameterEvent, "/parameter_events", qos_profile_parameter_events
             )
             if automatically_declare_parameters_from_overrides:
-                for name, override in self._overrides.items():
+                for name, override in self._node_overrides.items():
                     self.declare_parameter(name, override.value)
-            self._start_services(start_parameter_services, enable_logger_service)
+            self._node_start_services(start_parameter_services, enable_logger_service)
         except NavetteError:
             Node.destroy_node(self)  # leave no half-made node in the graph
             raise
 
-    def _join_graph(self) -> None:
+    def _node_join_graph(self) -> None:
         full_name = self._node_entities.full_name
         if full_name in self.get_fully_qualified_node_names():
             self._logger.warning(
                 f"another node is named {full_name}: node names should be unique"
             )
-        self._context.graph.add_node(self._info)
+        self._context.graph.add_node(self._node_info)
         self._context.nodes.append(self)
 
-    def _open_rosout(self) -> None:
+    def _node_open_rosout(self) -> None:
         publisher = self._node_topics.create_publisher(
             Log, "/rosout", qos_profile_rosout_default
         )
-        self._rosout_sink = RosoutSink(publisher, self._logger.name)
-        self._context.log.sinks.append(self._rosout_sink)
+        self._node_rosout_sink = RosoutSink(publisher, self._logger.name)
+        self._context.log.sinks.append(self._node_rosout_sink)
 
-    def _start_services(self, parameter_services: bool, logger_service: bool) -> None:
+    def _node_start_services(
+        self, parameter_services: bool, logger_service: bool
+    ) -> None:
         services = self._node_services
         self._time_source = TimeSource(
             self._context, self._clock, self, self._node_topics
@@ -173,11 +175,11 @@ class Node(HasHandle, GraphQueries, NodeParameters):
         if logger_service:
             self._logging_service = LoggingService(self._context.log, services)
 
-    def _publish_changes(self, changes: Changes) -> None:
+    def _node_publish_changes(self, changes: Changes) -> None:
         new, changed, deleted = changes
-        if not self._parameter_events.get_subscription_count():
+        if not self._node_parameter_events.get_subscription_count():
             return
-        self._parameter_events.publish(
+        self._node_parameter_events.publish(
             ParameterEvent(
                 stamp=ns_to_stamp(self._clock.now_ns),
                 node=self._node_entities.full_name,
@@ -192,13 +194,13 @@ class Node(HasHandle, GraphQueries, NodeParameters):
         if self._node_entities.is_destroyed:
             return
         sinks = self._context.log.sinks
-        if self._rosout_sink is not None and self._rosout_sink in sinks:
-            sinks.remove(self._rosout_sink)
+        if self._node_rosout_sink is not None and self._node_rosout_sink in sinks:
+            sinks.remove(self._node_rosout_sink)
         self._node_entities.destroy_all()
-        if self._executor is not None:
-            self._executor.remove_node(self)
+        if self._node_executor is not None:
+            self._node_executor.remove_node(self)
         self._context.nodes.remove(self)
-        self._context.graph.remove_node(self._info)
+        self._context.graph.remove_node(self._node_info)
 
     def __enter__(self) -> "Node":
         return self
@@ -209,10 +211,10 @@ class Node(HasHandle, GraphQueries, NodeParameters):
     # Identity, context and executor.
 
     def get_name(self) -> str:
-        return self._remapper.node_name
+        return self._node_remapper.node_name
 
     def get_namespace(self) -> str:
-        return self._remapper.namespace
+        return self._node_remapper.namespace
 
     def get_fully_qualified_name(self) -> str:
         return self._node_entities.full_name
@@ -230,23 +232,23 @@ class Node(HasHandle, GraphQueries, NodeParameters):
     @property
     def executor(self) -> Any:
         """The executor that runs the node's callbacks, or None."""
-        return self._executor
+        return self._node_executor
 
     @executor.setter
     def executor(self, executor: Any) -> None:
-        if self._executor is not None and executor is not self._executor:
-            self._executor.remove_node(self)
+        if self._node_executor is not None and executor is not self._node_executor:
+            self._node_executor.remove_node(self)
         if executor is not None:
             executor.add_node(self)
 
     def attach(self, executor: Any) -> None:
         """Let callbacks run; called by the executor that the node is added to."""
-        self._executor = executor
+        self._node_executor = executor
         self._node_entities.release(executor.threads)
 
     def detach(self) -> None:
         """Hold callbacks; called by the executor that the node is removed from."""
-        self._executor = None
+        self._node_executor = None
         self._node_entities.hold()
 
     @property

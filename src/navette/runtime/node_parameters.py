@@ -52,9 +52,9 @@ class NodeParameters:
         *,
         allow_undeclared: bool,
     ) -> None:
-        self._full_name = node_name
-        self._overrides = overrides
-        self._store = ParameterStore(on_change, allow_undeclared=allow_undeclared)
+        self._node_full_name = node_name
+        self._node_overrides = overrides
+        self._node_store = ParameterStore(on_change, allow_undeclared=allow_undeclared)
 
     def declare_parameter(
         self,
@@ -94,10 +94,12 @@ class NodeParameters:
             # A name without value and type is dynamically typed, as in rclpy.
             if len(entry) == 1:
                 descriptor.dynamic_typing = True
-            declared.append(self._declare(name, value, descriptor, ignore_override))
+            declared.append(
+                self._node_declare(name, value, descriptor, ignore_override)
+            )
         return declared
 
-    def _declare(
+    def _node_declare(
         self, name: str, value: Any, descriptor: Any, ignore_override: bool
     ) -> Parameter[Any]:
         validate_parameter_name(name)
@@ -116,32 +118,38 @@ class NodeParameters:
                 else None
             )
         origin = ""
-        if not ignore_override and name in self._overrides:
-            value, origin, _ = self._overrides[name]
+        if not ignore_override and name in self._node_overrides:
+            value, origin, _ = self._node_overrides[name]
         if kind is None:
             parameter: Parameter[Any] = Parameter(name, value=value)
         elif value is None:
             parameter = Parameter(name, ParameterType.NOT_SET)
         else:
-            parameter = Parameter(name, kind, self._typed(name, value, kind, origin))
-        self._store.declare(parameter, descriptor, origin)
-        return self._store.values[name]
+            parameter = Parameter(
+                name, kind, self._node_typed(name, value, kind, origin)
+            )
+        self._node_store.declare(parameter, descriptor, origin)
+        return self._node_store.values[name]
 
-    def _typed(self, name: str, value: Any, kind: ParameterType, origin: str) -> Any:
+    def _node_typed(
+        self, name: str, value: Any, kind: ParameterType, origin: str
+    ) -> Any:
         try:
             return coerced(name, value, kind)
         except ParameterError as error:
             where = f" (from {origin})" if origin else ""
-            raise ParameterError(f"node {self._full_name}: {error}{where}") from None
+            raise ParameterError(
+                f"node {self._node_full_name}: {error}{where}"
+            ) from None
 
     def undeclare_parameter(self, name: str) -> None:
-        self._declared(name)
-        if self._store.descriptors[name].read_only:
+        self._node_declared(name)
+        if self._node_store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
-        self._store.remove(name)
+        self._node_store.remove(name)
 
     def has_parameter(self, name: str) -> bool:
-        return name in self._store.values
+        return name in self._node_store.values
 
     def get_parameter(self, name: str) -> Parameter[Any]:
         """Return the parameter.
@@ -150,11 +158,11 @@ class NodeParameters:
             ParameterNotDeclaredException: not declared, and the node requires it.
             ParameterUninitializedException: declared with a type and without a value.
         """
-        parameter = self._known(name)
+        parameter = self._node_known(name)
         if (
             parameter.type_ is ParameterType.NOT_SET
-            and name in self._store.descriptors
-            and not self._store.descriptors[name].dynamic_typing
+            and name in self._node_store.descriptors
+            and not self._node_store.descriptors[name].dynamic_typing
         ):
             raise ParameterUninitializedException(name)
         return parameter
@@ -166,13 +174,13 @@ class NodeParameters:
         self, name: str, alternative_value: Parameter[Any] | None = None
     ) -> Parameter[Any]:
         """Return the parameter, or the alternative if it has no value."""
-        parameter = self._store.values.get(name)
+        parameter = self._node_store.values.get(name)
         if parameter is not None and parameter.type_ is not ParameterType.NOT_SET:
             return parameter
         return alternative_value or Parameter(name, ParameterType.NOT_SET)
 
     def get_parameter_type(self, name: str) -> ParameterType:
-        return self._known(name).type_
+        return self._node_known(name).type_
 
     def get_parameter_types(self, names: list[str]) -> list[ParameterType]:
         return [self.get_parameter_type(name) for name in names]
@@ -182,7 +190,7 @@ class NodeParameters:
         start = prefix + PARAMETER_SEPARATOR_STRING if prefix else ""
         return {
             name[len(start) :]: parameter
-            for name, parameter in self._store.values.items()
+            for name, parameter in self._node_store.values.items()
             if name.startswith(start)
         }
 
@@ -192,7 +200,9 @@ class NodeParameters:
             raise ValueError(f"depth must be >= 0, got {depth}")
         result = ListParametersResult()
         names = [
-            name for name in self._store.values if _is_listed(name, prefixes, depth)
+            name
+            for name in self._node_store.values
+            if _is_listed(name, prefixes, depth)
         ]
         result.names = names
         found = (n.rpartition(PARAMETER_SEPARATOR_STRING)[0] for n in names)
@@ -201,49 +211,51 @@ class NodeParameters:
 
     def known_parameters(self) -> list[str] | None:
         """Return the declared names; None if undeclared parameters are allowed."""
-        return None if self._store.allow_undeclared else list(self._store.values)
+        return (
+            None if self._node_store.allow_undeclared else list(self._node_store.values)
+        )
 
     def set_parameters(
         self, parameter_list: list[Parameter[Any]]
     ) -> list[SetParametersResult]:
         """Set the parameters one by one; the results contain the rejections."""
-        self._check_declared(parameter_list)
-        return [self._store.set([parameter]) for parameter in parameter_list]
+        self._node_check_declared(parameter_list)
+        return [self._node_store.set([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(
         self, parameter_list: list[Parameter[Any]]
     ) -> SetParametersResult:
         """Set all of the parameters or none."""
-        self._check_declared(parameter_list)
-        return self._store.set(parameter_list)
+        self._node_check_declared(parameter_list)
+        return self._node_store.set(parameter_list)
 
     def add_pre_set_parameters_callback(self, callback: PreCallback) -> None:
         """Add a callback that may change the list before it is checked."""
-        self._store.pre_callbacks.insert(0, callback)
+        self._node_store.pre_callbacks.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnCallback) -> None:
         """Add a callback that may reject the values."""
-        self._store.on_callbacks.insert(0, callback)
+        self._node_store.on_callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostCallback) -> None:
         """Add a callback that runs after the values were set."""
-        self._store.post_callbacks.insert(0, callback)
+        self._node_store.post_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreCallback) -> None:
-        self._store.pre_callbacks.remove(callback)
+        self._node_store.pre_callbacks.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnCallback) -> None:
-        self._store.on_callbacks.remove(callback)
+        self._node_store.on_callbacks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostCallback) -> None:
-        self._store.post_callbacks.remove(callback)
+        self._node_store.post_callbacks.remove(callback)
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
-        if name not in self._store.descriptors:
-            if self._store.allow_undeclared:
+        if name not in self._node_store.descriptors:
+            if self._node_store.allow_undeclared:
                 return ParameterDescriptor(name=name)
-            self._known(name)
-        return self._store.descriptors[name]
+            self._node_known(name)
+        return self._node_store.descriptors[name]
 
     def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
         return [self.describe_parameter(name) for name in names]
@@ -255,48 +267,48 @@ class NodeParameters:
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
         """Replace the descriptor; set the alternative if the value does not fit it."""
-        self._declared(name)
-        if self._store.descriptors[name].read_only:
+        self._node_declared(name)
+        if self._node_store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
         old = (
-            self._store.values[name],
-            self._store.descriptors[name],
+            self._node_store.values[name],
+            self._node_store.descriptors[name],
         )
         parameter = old[0]
         if alternative_value is not None:
             value = parameter_value_to_python(alternative_value)
             parameter = Parameter(name, value=value)
-        self._store.remove(name)
+        self._node_store.remove(name)
         descriptor = copy.copy(descriptor)
         descriptor.type = int(parameter.type_)
         try:
-            self._store.declare(parameter, descriptor, "set_descriptor")
+            self._node_store.declare(parameter, descriptor, "set_descriptor")
         except ParameterError:
             (
-                self._store.values[name],
-                self._store.descriptors[name],
+                self._node_store.values[name],
+                self._node_store.descriptors[name],
             ) = old
             raise
-        return self._store.values[name].get_parameter_value()
+        return self._node_store.values[name].get_parameter_value()
 
-    def _known(self, name: str) -> Parameter[Any]:
-        if self._store.allow_undeclared and name not in self._store.values:
+    def _node_known(self, name: str) -> Parameter[Any]:
+        if self._node_store.allow_undeclared and name not in self._node_store.values:
             return Parameter(name, ParameterType.NOT_SET)
-        return self._declared(name)
+        return self._node_declared(name)
 
-    def _declared(self, name: str) -> Parameter[Any]:
-        parameter = self._store.values.get(name)
+    def _node_declared(self, name: str) -> Parameter[Any]:
+        parameter = self._node_store.values.get(name)
         if parameter is None:
             raise ParameterNotDeclaredException(
-                name, self._full_name, list(self._store.values)
+                name, self._node_full_name, list(self._node_store.values)
             )
         return parameter
 
-    def _check_declared(self, parameters: Sequence[Parameter[Any]]) -> None:
+    def _node_check_declared(self, parameters: Sequence[Parameter[Any]]) -> None:
         for parameter in parameters:
             if not isinstance(parameter, Parameter):
                 raise TypeError(f"expected a Parameter, got {parameter!r}")
-            self._known(parameter.name)
+            self._node_known(parameter.name)
 
 
 def _declared_type(

@@ -3,7 +3,7 @@
 import shlex
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,8 @@ from navette.cli.up.variables import Variables
 from navette.errors import InvalidValueError, ParameterError
 from navette.ros2.launch.session import find_launch_file
 from navette.ros2.names.targets import find_sources, read_programs
-from navette.ros2.packages.launch_ros.node_arguments import ros_arguments
 from navette.runtime.names import RemapRule
-from navette.runtime.parameter_files import read_parameter_file
+from navette.runtime.parameter_files import format_value, read_parameter_file
 
 CommandLine = tuple[list[str], list[Path]]
 """The words, and the files that the program reads."""
@@ -72,13 +71,35 @@ def _run(entry: ServiceEntry, words: list[str], variables: Variables) -> Command
                 raise ParameterError(f"parameters: {values!r}: expected a mapping")
             parameters += _flat(variables.expand_value(values))
     name = entry.own.get("node_name")
-    ros = ros_arguments(
+    ros = _ros_arguments(
         None if name is None else str(name),
         variables.expand(str(entry.own.get("namespace") or "")),
         parameters,
         _remaps(entry, variables),
     )
     return _navette("run", *words, *(["--ros-args", *ros] if ros else [])), files
+
+
+def _ros_arguments(
+    name: str | None,
+    namespace: str,
+    parameters: Iterable[Path | tuple[str, Any]],
+    remaps: Iterable[tuple[str, str]],
+) -> list[str]:
+    """Return the words after ``--ros-args``."""
+    words: list[str] = []
+    if name is not None:
+        words += ["-r", f"__node:={name}"]
+    if namespace:
+        words += ["-r", f"__ns:={namespace}"]
+    for item in parameters:
+        if isinstance(item, Path):
+            words += ["--params-file", str(item)]
+        else:
+            words += ["-p", f"{item[0]}:={format_value(item[1])}"]
+    for source, target in remaps:
+        words += ["-r", f"{source}:={target}"]
+    return words
 
 
 def _parameter_files(entry: ServiceEntry, variables: Variables) -> list[Path]:

@@ -244,7 +244,9 @@ class ArbiterNode(StageNode):
         self, group: str, kind: type[P], defaults: Mapping[str, P]
     ) -> dict[str, P]:
         """Declare ``GROUP.NAME.FIELD``; return the entries that have a topic."""
-        given = [n.split(".") for n in self._overrides if n.startswith(f"{group}.")]
+        given = [
+            n.split(".") for n in self._node_overrides if n.startswith(f"{group}.")
+        ]
         names = dict.fromkeys([*defaults, *(n[1] for n in given if len(n) == 3)])
         fixed = ParameterDescriptor(read_only=True, dynamic_typing=True)
         found = {}

@@ -46,7 +46,7 @@ class StageLifecycle(LifecycleNodeMixin):
     ) -> None:
         assert name in NAV2_NODES, "only Nav2's names are offered"
         self._on_inactive = on_inactive
-        self._begin_lifecycle(node, name)
+        self._lifecycle_begin(node, name)
         self._name = name
         self.trigger_configure()
         self.trigger_activate()
@@ -65,13 +65,13 @@ class StageLifecycle(LifecycleNodeMixin):
         return super().on_shutdown(state)
 
     def _stop(self, how: str) -> None:
-        self._node.get_logger().info(
+        self._lifecycle_node.get_logger().info(
             f"{self._name} was {how} by a program: goals are refused until "
             "lifecycle_manager_navigation/manage_nodes starts it up"
         )
         self._on_inactive()
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_change_state(self, request: Any, response: Any) -> Any:
         wanted = request.transition
         configures = (
             wanted.label == "configure"
@@ -80,4 +80,4 @@ class StageLifecycle(LifecycleNodeMixin):
         )
         if configures and self._state_machine.state == STATES["finalized"]:
             self._state_machine.state = STATES["unconfigured"]
-        return super()._on_change_state(request, response)
+        return super()._lifecycle_on_change_state(request, response)

@@ -8,7 +8,8 @@ import importlib
 import inspect
 import itertools
 import sys
-from collections.abc import Iterator, Sequence
+import traceback
+from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import entry_points
 from typing import Any
@@ -35,6 +36,7 @@ class ComponentManager:
 
     def __init__(self, node: Node, executor: Executor) -> None:
         self._executor = executor
+        self._log = node.get_logger()
         self._ids = itertools.count(1)
         self._nodes: dict[int, Node] = {}
         for name, service, callback in (
@@ -112,6 +114,7 @@ class ComponentManager:
         except NavetteError:
             raise
         except Exception as error:  # a user's constructor may raise anything
+            self._log.error(f"loading {plugin} failed:\n{traceback.format_exc()}")
             raise ComponentLoadError(
                 f"{plugin} of {package}: {type(error).__name__}: {error}"
             ) from error
@@ -161,11 +164,6 @@ def _arguments_of(
         yield
     finally:
         context.arguments, context.overrides = before
-
-
-def arguments_of_words(words: Sequence[str]) -> RosArguments:
-    """Parse ROS arguments without the leading ``--ros-args``."""
-    return parse_ros_arguments(["--ros-args", *words])
 
 
 def find_component(package: str, plugin: str) -> Any:

@@ -3,9 +3,7 @@
 import os
 import sys
 from contextlib import ExitStack
-from contextvars import ContextVar
 from dataclasses import replace
-from queue import SimpleQueue
 from threading import Lock
 
 from navette.ros2.launch.streams import program_output, program_streams
@@ -20,11 +18,6 @@ from navette.runtime.graph import Graph
 from navette.supervisor import INTERRUPT, KILL, ProcessHandle, ProcessListener
 
 ABANDONED = -KILL
-
-program_input: ContextVar["SimpleQueue[bytes] | None"] = ContextVar(
-    "program_input", default=None
-)
-"""Standard input of a program, in pieces; None outside of launched programs."""
 
 _log = get_logger("launch")
 
@@ -76,7 +69,6 @@ class ProgramThread:
 
     def __init__(self, program: Program, graph: Graph) -> None:
         self._program = program
-        self._input: SimpleQueue[bytes] = SimpleQueue()
         self._listener: ProcessListener | None = None
         self._over = False
         self._lock = Lock()
@@ -106,12 +98,16 @@ class ProgramThread:
             self._running.shut_down()
 
     def write(self, data: bytes) -> None:
-        self._input.put(data)
+        _log.warning(
+            "%s shares the standard input of this process; %d bytes for it are "
+            "dropped (navette launch --processes gives it one of its own)",
+            self._program.name,
+            len(data),
+        )
 
     def _main(self) -> object:
         assert self._listener is not None, "runs after watch()"
         program_output.set(self._listener.output)
-        program_input.set(self._input)
         return self._program.main()
 
     def _exit(self, code: int) -> None:

@@ -118,6 +118,18 @@ class RclpyLoader(_LazyLoader):
         return RclpyLoader(f"{self.name}.{name}") if is_module else None
 
 
+class _PackageModule(ModuleType):
+    """Module whose names stay when a submodule of the same name is imported.
+
+    ``launch_ros.utilities.evaluate_parameters`` is a module and its function.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        is_taken = isinstance(value, ModuleType) and name in vars(self)["__all__"]
+        if not is_taken:
+            super().__setattr__(name, value)
+
+
 class PackageLoader(_LazyLoader):
     """Loader of a package of ``navette.ros2.packages`` under ROS 2's name.
 
@@ -131,10 +143,11 @@ class PackageLoader(_LazyLoader):
         self._alias_of = alias_of
         self._real = ModuleType(alias_of)
 
-    def create_module(self, spec: ModuleSpec) -> None:
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
         # Python lists the module after this call; then other threads can import its
         # submodules, which need the contents.
         self._real = importlib.import_module(self._alias_of)
+        return _PackageModule(self.name)
 
     def exec_module(self, module: ModuleType) -> None:
         module.__doc__, module.__file__ = self._real.__doc__, self._real.__file__

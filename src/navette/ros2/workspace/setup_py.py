@@ -5,6 +5,7 @@ expressions are ignored.
 """
 
 import ast
+import glob
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,14 +37,18 @@ class SetupPy:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return [*self.texts(node.left), *self.texts(node.right)]
         if isinstance(node, ast.Call) and _called_name(node) == "glob" and node.args:
-            return self._glob(self.text(node.args[0]))
+            return self._glob(self.text(node.args[0]), node.keywords)
         return []
 
-    def _glob(self, pattern: str | None) -> list[str]:
+    def _glob(self, pattern: str | None, options: list[ast.keyword]) -> list[str]:
         if not pattern or Path(pattern).is_absolute():
             return []
-        found = sorted(self.folder.glob(pattern))
-        return [str(path.relative_to(self.folder)) for path in found]
+        # Not Path.glob: it refuses patterns such as `launch/[!_]**`.
+        recursive = any(
+            option.arg == "recursive" and getattr(option.value, "value", False)
+            for option in options
+        )
+        return sorted(glob.glob(pattern, root_dir=self.folder, recursive=recursive))  # noqa: PTH207
 
 
 def read_setup_py(path: Path) -> SetupPy | None:

@@ -56,9 +56,9 @@ class LifecycleNodeMixin(ManagedEntity):
         if not isinstance(self, Node):
             raise RuntimeError("LifecycleNodeMixin needs Node in the inheritance tree")
         name = "~" if enable_communication_interface else None
-        self._begin_lifecycle(cast(Node, self), name, callback_group)
+        self._lifecycle_begin(cast(Node, self), name, callback_group)
 
-    def _begin_lifecycle(
+    def _lifecycle_begin(
         self, node: Node, name: str | None, callback_group: CallbackGroup | None = None
     ) -> None:
         """Start in the state ``unconfigured``.
@@ -68,24 +68,24 @@ class LifecycleNodeMixin(ManagedEntity):
             name: prefix of the services' names; None: no services.
             callback_group: the services' group.
         """
-        self._node = node
+        self._lifecycle_node = node
         self._state_machine = LifecycleStateMachine()
         self._managed_entities: list[ManagedEntity] = []
-        self._transition_events: Publisher[TransitionEvent] | None = None
+        self._lifecycle_transition_events: Publisher[TransitionEvent] | None = None
         if name is not None:
-            self._open_interface(name, callback_group)
+            self._lifecycle_open_interface(name, callback_group)
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        return self._change_state(Transition.TRANSITION_CONFIGURE)
+        return self._lifecycle_change_state(Transition.TRANSITION_CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        return self._change_state(Transition.TRANSITION_CLEANUP)
+        return self._lifecycle_change_state(Transition.TRANSITION_CLEANUP)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        return self._change_state(Transition.TRANSITION_ACTIVATE)
+        return self._lifecycle_change_state(Transition.TRANSITION_ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        return self._change_state(Transition.TRANSITION_DEACTIVATE)
+        return self._lifecycle_change_state(Transition.TRANSITION_DEACTIVATE)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Shut down from any primary state.
@@ -93,7 +93,7 @@ class LifecycleNodeMixin(ManagedEntity):
         Raises:
             RCLError: the node is shut down already.
         """
-        return self._change_state(self._state_machine.by_label("shutdown").id)
+        return self._lifecycle_change_state(self._state_machine.by_label("shutdown").id)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         if not isinstance(entity, ManagedEntity):
@@ -111,7 +111,7 @@ class LifecycleNodeMixin(ManagedEntity):
     ) -> LifecyclePublisher[MsgT]:
         if publisher_class is not None:
             raise TypeError("lifecycle publishers do not accept a publisher_class")
-        publisher = self._node.create_publisher(
+        publisher = self._lifecycle_node.create_publisher(
             msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
         )
         assert isinstance(publisher, LifecyclePublisher), "the requested class"
@@ -122,27 +122,27 @@ class LifecycleNodeMixin(ManagedEntity):
         if publisher not in self._managed_entities:
             return False
         self._managed_entities.remove(publisher)
-        return self._node.destroy_publisher(publisher)
+        return self._lifecycle_node.destroy_publisher(publisher)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_configure", state)
+        return self._lifecycle_call_entities("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_cleanup", state)
+        return self._lifecycle_call_entities("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_shutdown", state)
+        return self._lifecycle_call_entities("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_activate", state)
+        return self._lifecycle_call_entities("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_deactivate", state)
+        return self._lifecycle_call_entities("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._call_entities("on_error", state)
+        return self._lifecycle_call_entities("on_error", state)
 
-    def _call_entities(
+    def _lifecycle_call_entities(
         self, name: str, state: LifecycleState
     ) -> TransitionCallbackReturn:
         for entity in tuple(self._managed_entities):
@@ -151,27 +151,27 @@ class LifecycleNodeMixin(ManagedEntity):
                 return result
         return TransitionCallbackReturn.SUCCESS
 
-    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
+    def _lifecycle_change_state(self, transition_id: int) -> TransitionCallbackReturn:
         """Run a transition with its callbacks; return ERROR if it is not available."""
         before = self._state_machine.state
         try:
             transition = self._state_machine.by_id(transition_id)
         except RCLError as error:
-            self._node.get_logger().error(str(error))
+            self._lifecycle_node.get_logger().error(str(error))
             return TransitionCallbackReturn.ERROR
-        self._enter(transition)
-        result = self._run_callback(before)
-        self._enter(self._state_machine.by_label(result.to_label()))
+        self._lifecycle_enter(transition)
+        result = self._lifecycle_run_callback(before)
+        self._lifecycle_enter(self._state_machine.by_label(result.to_label()))
         if result is TransitionCallbackReturn.ERROR:
-            recovery = self._run_callback(before)
-            self._enter(self._state_machine.by_label(recovery.to_label()))
+            recovery = self._lifecycle_run_callback(before)
+            self._lifecycle_enter(self._state_machine.by_label(recovery.to_label()))
         return result
 
-    def _enter(self, transition: TransitionDefinition) -> None:
+    def _lifecycle_enter(self, transition: TransitionDefinition) -> None:
         self._state_machine.state = transition.goal
-        if self._transition_events is not None:
+        if self._lifecycle_transition_events is not None:
             described = _description(transition)
-            now_ns = self._node.get_clock().now().nanoseconds
+            now_ns = self._lifecycle_node.get_clock().now().nanoseconds
             event = made(
                 TransitionEvent,
                 timestamp=now_ns,
@@ -180,9 +180,11 @@ class LifecycleNodeMixin(ManagedEntity):
                 start_state=described.start_state,
                 goal_state=described.goal_state,
             )
-            self._transition_events.publish(event)
+            self._lifecycle_transition_events.publish(event)
 
-    def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+    def _lifecycle_run_callback(
+        self, before: LifecycleState
+    ) -> TransitionCallbackReturn:
         """Run the callback of the current transition state.
 
         An exception is an error of the lifecycle: it is logged with its traceback, and
@@ -193,58 +195,70 @@ class LifecycleNodeMixin(ManagedEntity):
         try:
             return _checked(callback(before), name, self)
         except Exception:  # a callback may raise anything: the transition fails
-            self._node.get_logger().error(f"{name} raised:\n{traceback.format_exc()}")
+            self._lifecycle_node.get_logger().error(
+                f"{name} raised:\n{traceback.format_exc()}"
+            )
             return TransitionCallbackReturn.ERROR
 
-    def _open_interface(self, prefix: str, group: CallbackGroup | None) -> None:
+    def _lifecycle_open_interface(
+        self, prefix: str, group: CallbackGroup | None
+    ) -> None:
         for type_name, name, callback in (
-            ("ChangeState", "change_state", self._on_change_state),
-            ("GetState", "get_state", self._on_get_state),
-            ("GetAvailableStates", "get_available_states", self._on_get_states),
+            ("ChangeState", "change_state", self._lifecycle_on_change_state),
+            ("GetState", "get_state", self._lifecycle_on_get_state),
+            (
+                "GetAvailableStates",
+                "get_available_states",
+                self._lifecycle_on_get_states,
+            ),
             (
                 "GetAvailableTransitions",
                 "get_available_transitions",
-                self._on_get_transitions,
+                self._lifecycle_on_get_transitions,
             ),
-            ("GetAvailableTransitions", "get_transition_graph", self._on_get_graph),
+            (
+                "GetAvailableTransitions",
+                "get_transition_graph",
+                self._lifecycle_on_get_graph,
+            ),
         ):
-            self._node.serve(
+            self._lifecycle_node.serve(
                 f"lifecycle_msgs/srv/{type_name}",
                 f"{prefix}/{name}",
                 callback,
                 callback_group=group,
             )
-        self._transition_events = self._node.create_publisher(
+        self._lifecycle_transition_events = self._lifecycle_node.create_publisher(
             TransitionEvent, f"{prefix}/transition_event", 10
         )
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_change_state(self, request: Any, response: Any) -> Any:
         transition_id = request.transition.id
         if request.transition.label:
             try:
                 found = self._state_machine.by_label(request.transition.label)
             except RCLError as error:
-                self._node.get_logger().error(str(error))
+                self._lifecycle_node.get_logger().error(str(error))
                 return response
             transition_id = found.id
-        result = self._change_state(transition_id)
+        result = self._lifecycle_change_state(transition_id)
         response.success = result is TransitionCallbackReturn.SUCCESS
         return response
 
-    def _on_get_state(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_get_state(self, request: Any, response: Any) -> Any:
         response.current_state = _state(self._state_machine.state)
         return response
 
-    def _on_get_states(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_get_states(self, request: Any, response: Any) -> Any:
         response.available_states = [_state(each) for each in STATES.values()]
         return response
 
-    def _on_get_transitions(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_get_transitions(self, request: Any, response: Any) -> Any:
         available = self._state_machine.available_transitions
         response.available_transitions = [_description(each) for each in available]
         return response
 
-    def _on_get_graph(self, request: Any, response: Any) -> Any:
+    def _lifecycle_on_get_graph(self, request: Any, response: Any) -> Any:
         response.available_transitions = [_description(each) for each in TRANSITIONS]
         return response
 

@@ -160,7 +160,7 @@ class StageNode(Node):
 
         The parameters of chosen methods are declared beside those of PARAMS.
         """
-        chosen = {name: each.value for name, each in self._overrides.items()}
+        chosen = {name: each.value for name, each in self._node_overrides.items()}
         return declare_params(self, with_methods(self.PARAMS, chosen))
 
     def inputs(self) -> tuple[Input, ...]:
@@ -282,7 +282,7 @@ class StageNode(Node):
             self._arrivals_ns[topic] = arrival_ns
 
     def _check_unknown_overrides(self) -> None:
-        for name, override in self._overrides.items():
+        for name, override in self._node_overrides.items():
             if not self.has_parameter(name) and not override.is_for_all:
                 known = ", ".join(sorted(self.known_parameters() or []))
                 raise ParameterError(

@@ -10,7 +10,7 @@ import pytest
 import navette
 from navette.errors import ParameterError
 from navette.msgs.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
-from navette.ros2.launch.components import ComponentManager, arguments_of_words
+from navette.ros2.launch.components import ComponentManager
 from navette.runtime import (
     Context,
     Executor,
@@ -19,6 +19,7 @@ from navette.runtime import (
     Parameter,
     VirtualClock,
 )
+from navette.runtime.arguments import parse_ros_arguments
 from navette.runtime.context import get_default_context, reset_default_context
 
 MODULE = """
@@ -133,11 +134,13 @@ def test_an_unknown_id(container: Container) -> None:
 
 
 def test_components_of_a_launch_file_are_listed(container: Container) -> None:
-    arguments = arguments_of_words(["-r", "__node:=named", "-p", "rate:=3.0"])
+    arguments = parse_ros_arguments(
+        ["--ros-args", "-r", "__node:=named", "-p", "rate:=3.0"]
+    )
     number = container.manager.load(
         "components_here", "components_here:Talker", arguments, "launch file"
     )
     assert container.listed() == [(number, "/named")]
-    wrong = arguments_of_words(["-p", "speed:=3.0"])
+    wrong = parse_ros_arguments(["--ros-args", "-p", "speed:=3.0"])
     with pytest.raises(ParameterError, match="speed"):
         container.manager.load("", "components_here:Talker", wrong, "launch file")

@@ -94,6 +94,18 @@ from launch.substitutions import LaunchConfiguration, ThisLaunchFileDir
 from launch_ros.actions import *
 from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
+import launch.events
+import launch.logging
+import logging
+
+
+def shut_down_after_an_error(context):
+    class End(logging.Handler):
+        def emit(self, record):
+            if record.levelname == "ERROR":
+                context.emit_event_sync(launch.events.Shutdown())
+
+    launch.logging.get_logger("launch_ros").addHandler(End())
 """
 
 
@@ -166,7 +178,9 @@ def test_a_process_per_node(workspace: Path, capfd: Any) -> None:
     )
     assert launch(file, {}, processes=True) == 0
     out = capfd.readouterr().out
-    assert "'--x', 'a b', '--ros-args', '--log-level', 'debug', '-r'" in out
+    assert (
+        "'--x', 'a b', '--ros-args', '--log-level', 'debug', '--ros-args', '-r'" in out
+    )
     assert "[arguments-1] argv ['parlance" in out
 
 
@@ -181,8 +195,8 @@ def test_each_program_has_its_own_arguments(workspace: Path, capsys: Any) -> Non
     argv = sys.argv
     assert launch(file, {}) == 0
     out = capsys.readouterr().out
-    assert "[arguments-1] argv ['arguments', 'one']" in out
-    assert "[arguments-2] argv ['arguments', 'two']" in out
+    assert "[arguments-1] argv ['arguments', 'one', '--ros-args']" in out
+    assert "[arguments-2] argv ['arguments', 'two', '--ros-args']" in out
     assert sys.argv is argv
 
 
@@ -252,16 +266,20 @@ def test_components_share_an_executor(workspace: Path, capsys: Any) -> None:
 def test_a_component_that_fails_to_load(
     workspace: Path, capsys: Any, plugin: str, options: str, reason: str
 ) -> None:
+    # The container stays, as in ROS 2; the test ends the launch.
     file = write(
         workspace,
         f"""
+        OpaqueFunction(function=shut_down_after_an_error),
         ComposableNodeContainer(
             name="box", namespace="", composable_node_descriptions=[
                 ComposableNode(package="parlance", plugin="{plugin}"{options})]),
         """,
     )
     assert launch(file, {}) == 1
-    assert re.search(reason, capsys.readouterr().err)
+    err = capsys.readouterr().err
+    assert re.search(reason, err)
+    assert "Failed to load node" in err
 
 
 def test_an_undeclared_argument(workspace: Path) -> None:

@@ -140,9 +140,12 @@ def load_composable_node(element: Element) -> LaunchDescriptionEntity:
 
 @makes("set_parameter")
 def set_parameter(element: Element) -> LaunchDescriptionEntity:
-    return SetParameter(
-        element.need_parts("name"), _value(element), **condition_of(element)
-    )
+    name, raw = element.need_parts("name"), element.value("value")
+    is_plain = isinstance(raw, str) and not {"type", "value-sep"} & {
+        *element.attributes
+    }
+    value = element.parse(raw) if is_plain else _value(element)
+    return SetParameter(name, value, **condition_of(element))
 
 
 def _namespace(element: Element) -> Any:
@@ -224,7 +227,9 @@ def _composable_nodes(element: Element) -> list[ComposableNode]:
     for each in element.elements("composable_node"):
         extra: list[Any] = []
         for argument in each.elements("extra_arg"):
-            extra.append({argument.need("name"): argument.text("value")})
+            name = tuple(argument.need_parts("name"))
+            extra.append({name: tuple(argument.need_parts("value"))})
+            argument.finish()
         found.append(
             ComposableNode(
                 package=each.need_parts("pkg"),

@@ -88,7 +88,7 @@ class LaunchContext:
         self.loop = loop or EventLoop(SystemClock())
         self.runner = runner or SubprocessRunner()
         self.is_shutdown = False
-        self.launch_configurations: dict[str, str] = {}
+        self.launch_configurations: dict[str, Any] = {}
         self.known_arguments: set[str] = set()
         self.notes: dict[str, Any] = {}
         self._event_queue: queue.SimpleQueue[Event] = queue.SimpleQueue()
@@ -97,7 +97,7 @@ class LaunchContext:
         self._initial_environment = dict(os.environ)
         self._locals: list[dict[str, Any]] = [{}]
         self._globals: dict[str, Any] = {}
-        self._configuration_stack: list[dict[str, str]] = []
+        self._configuration_stack: list[dict[str, Any]] = []
         self._environment_stack: list[dict[str, str]] = []
         self._event_handlers: list[ContextHandler] = []
         self._asyncio_loop: asyncio.AbstractEventLoop | None = None

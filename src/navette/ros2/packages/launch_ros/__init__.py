@@ -3,8 +3,21 @@
 from navette.ros2.packages.launch_ros import (
     actions,
     descriptions,
+    event_handlers,
+    events,
     parameter_descriptions,
+    ros_adapters,
     substitutions,
+    utilities,
 )
 
-__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions"]
+__all__ = [
+    "actions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "parameter_descriptions",
+    "ros_adapters",
+    "substitutions",
+    "utilities",
+]

@@ -1,23 +1,26 @@
 """Parameter values and parameter files with substitutions."""
 
-import types
-from collections.abc import Iterable
+import os
+from functools import cache
 from pathlib import Path
-from typing import Any, get_args, get_origin
+from tempfile import NamedTemporaryFile, TemporaryDirectory
+from typing import Any, get_args
 
-from navette.errors import FileFormatError, ParameterError
-from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
+import yaml
+
+from navette.errors import FileFormatError
+from navette.files.untrusted.yaml_input import load_yaml
+from navette.ros2.packages.launch import SomeSubstitutionsType
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.frontend import parse_substitution
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import (
-    Parts,
-    perform_substitutions,
+from navette.ros2.packages.launch.substitution import Parts
+from navette.ros2.packages.launch.utilities.type_utils import (
+    extract_type,
+    normalize_typed_substitution,
+    perform_typed_substitution,
 )
-from navette.ros2.packages.launch.typed import perform_bool
-from navette.runtime.parameter_files import parse_value
-
-_SCALARS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}
+from navette.runtime.strict_mode import is_strict
 
 
 class ParameterValue:
@@ -26,86 +29,42 @@ class ParameterValue:
     Args:
         value: a value, substitutions, or a list of values.
         value_type: type of the value: ``int``, ``float``, ``bool``, ``str``, or a list
-            of one of these (``List[int]``); None: by the rules of parameter files.
+            of one of these (``List[int]``); None: by the rules of YAML.
+
+    Raises:
+        TypeError: neither a value of the type nor substitutions.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
-        self.value = value
+        try:
+            number = _as_float(value, value_type)
+            self._given = normalize_typed_substitution(number, value_type)
+        except (TypeError, ValueError) as error:
+            raise InvalidLaunchValueError(f"parameter value: {error}") from error
+        self.value = self._given
         self.value_type = value_type
-        _checked_type(value_type)
 
     def evaluate(self, context: LaunchContext) -> Any:
-        """Return the value, of the requested type.
+        """Return the value, which ``value`` is from then on.
 
         Raises:
-            ParameterError: the value has another type.
+            TypeError: the value has another type.
+            ValueError: a text has no value of the type.
         """
-        value = self.value
-        if isinstance(value, ParameterValue):
-            value = value.evaluate(context)
-        elif _has_substitutions(value):
-            text = Parts.of(value).perform(context)
-            value = text if self.value_type is str else parse_value(text)
-        elif isinstance(value, (list, tuple)):
-            value = [_item(context, each) for each in value]
-        elif isinstance(value, Path):
-            value = str(value)
-        return value if self.value_type is None else _as_type(value, self.value_type)
+        self.value = perform_typed_substitution(context, self._given, self.value_type)
+        return self.value
+
+    def __str__(self) -> str:
+        return f"ParameterValue(value={self.value}, value_type={self.value_type})"
 
 
-def _has_substitutions(value: Any) -> bool:
-    """Return whether a value is a substitution or a list to join."""
-    if isinstance(value, Substitution):
-        return True
-    if not isinstance(value, (list, tuple)):
-        return False
-    return (
-        bool(value)
-        and all(isinstance(each, (str, Substitution)) for each in value)
-        and any(isinstance(each, Substitution) for each in value)
-    )
-
-
-def _item(context: LaunchContext, value: Any) -> Any:
-    if isinstance(value, (Substitution, list, tuple)):
-        text = Parts.of(value).perform(context)
-        return parse_value(text)
-    return value
-
-
-def _checked_type(value_type: Any) -> tuple[type | None, bool]:
-    """Return the scalar type and whether it is a list of them."""
-    if value_type is None:
-        return None, False
-    is_list = get_origin(value_type) is list or isinstance(
-        value_type, types.GenericAlias
-    )
-    scalar = (get_args(value_type) or (None,))[0] if is_list else value_type
-    if scalar not in _SCALARS.values():
-        raise InvalidLaunchValueError(
-            f"value_type {value_type!r}: expected int, float, bool, str or a "
-            "list of one of these, as in List[int]"
-        )
-    return scalar, is_list
-
-
-def _as_type(value: Any, value_type: Any) -> Any:
-    scalar, is_list = _checked_type(value_type)
-    if is_list:
-        if not isinstance(value, list):
-            raise ParameterError(f"value {value!r}: expected a list, {value_type}")
-        return [_as_scalar(each, scalar) for each in value]
-    return _as_scalar(value, scalar)
-
-
-def _as_scalar(value: Any, scalar: type | None) -> Any:
-    if scalar is float and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if scalar is str and not isinstance(value, list):
-        return str(value).lower() if isinstance(value, bool) else str(value)
-    if scalar is not None and type(value) is not scalar:
-        raise ParameterError(f"value {value!r}: expected {scalar.__name__}")
-    return value
+def _as_float(value: Any, value_type: Any) -> Any:
+    """Return integers as floats where floats are expected, except in strict mode."""
+    if value_type is None or extract_type(value_type)[0] is not float or is_strict():
+        return value
+    if isinstance(value, list) and get_args(value_type):
+        return [float(item) if type(item) is int else item for item in value]
+    return float(value) if type(value) is int else value
 
 
 class Parameter:
@@ -114,12 +73,28 @@ class Parameter:
     def __init__(
         self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None
     ) -> None:
+        self.name: Parts | str = Parts.of(name)
         self._name = Parts.of(name)
         self._value = ParameterValue(value, value_type=value_type)
 
+    @property
+    def value(self) -> Any:
+        return self._value.value
+
+    @property
+    def value_type(self) -> Any:
+        return self._value.value_type
+
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Return name and value."""
-        return self._name.perform(context), self._value.evaluate(context)
+        """Return name and value, which the attributes are from then on."""
+        self.name = self._name.perform(context)
+        return self.name, self._value.evaluate(context)
+
+    def __str__(self) -> str:
+        return (
+            f"Parameter(name={self.name}, value={self.value}, "
+            f"value_type={self.value_type})"
+        )
 
 
 class ParameterFile:
@@ -131,47 +106,67 @@ class ParameterFile:
     """
 
     def __init__(
-        self, param_file: SomeSubstitutionsType, *, allow_substs: Any = False
+        self, param_file: SomeSubstitutionsType | bytes, *, allow_substs: Any = False
     ) -> None:
-        self._path = Parts.of(param_file)
-        self._allow_substs = allow_substs
+        is_path = isinstance(param_file, (bytes, os.PathLike))
+        path = os.fsdecode(param_file) if is_path else param_file  # type: ignore[arg-type]
+        self._path = Parts.of(path)
+        self._allow_substs = normalize_typed_substitution(allow_substs, bool)
+        self._copy: Path | None = None
+        self.param_file: Parts | Path = self._path
+        self.allow_substs = self._allow_substs
 
     def evaluate(self, context: LaunchContext) -> Path:
         """Return the path of the file, or of a copy with substitutions performed.
 
         Raises:
-            FileFormatError: the file does not exist, or a substitution fails.
+            FileFormatError: the file cannot be read, or a substitution fails.
         """
-        path = Path(self._path.perform(context))
-        if not path.is_file():
-            raise FileFormatError(path, "no such parameter file")
-        if not perform_bool(context, self._allow_substs):
-            return path
-        text = path.read_text(encoding="utf-8")
-        try:
-            done = perform_substitutions(context, parse_substitution(text))
-        except ValueError as error:
-            raise FileFormatError(path, str(error)) from error
-        performed = context.scratch_folder() / f"{len(text)}_{abs(hash(done))}.yaml"
-        performed.write_text(done, encoding="utf-8")
-        return performed
-
-
-def evaluate_dict(
-    context: LaunchContext, values: dict[Any, Any], prefix: str = ""
-) -> list[tuple[str, Any]]:
-    """Return the (name, value) pairs of a dict; names of nested dicts are dotted."""
-    found: list[tuple[str, Any]] = []
-    for key, value in values.items():
-        keys = (
-            list(key) if isinstance(key, Iterable) and not isinstance(key, str) else key
+        path = Path("".join(context.perform_substitution(part) for part in self._path))
+        self.allow_substs = perform_typed_substitution(
+            context, self._allow_substs, bool
         )
-        name = Parts.of(keys).perform(context)
-        name = f"{prefix}{name}"
-        if isinstance(value, dict):
-            found += evaluate_dict(context, value, f"{name}.")
-        else:
-            if not isinstance(value, ParameterValue):
-                value = ParameterValue(value)
-            found.append((name, value.evaluate(context)))
-    return found
+        if self.allow_substs:
+            path = self._copy = _performed(context, path)
+        self.param_file = path
+        return path
+
+    def cleanup(self) -> None:
+        """Delete the copy."""
+        if self._copy is not None:
+            self._copy.unlink(missing_ok=True)
+            self._copy, self.param_file = None, self._path
+
+    def __str__(self) -> str:
+        return (
+            f"ParameterFile(param_file={self.param_file}, "
+            f"allow_substs={self.allow_substs})"
+        )
+
+
+def _performed(context: LaunchContext, path: Path) -> Path:
+    """Return a copy of a file with its substitutions performed."""
+    try:
+        parts = parse_substitution(path.read_text(encoding="utf-8"))
+        text = "".join(context.perform_substitution(part) for part in parts)
+        load_yaml(text)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise FileFormatError(path, reason) from error
+    except (ValueError, yaml.YAMLError) as error:
+        raise FileFormatError(path, str(error)) from error
+    return write_parameter_file(text)
+
+
+def write_parameter_file(text: str) -> Path:
+    """Return a new parameter file, which is deleted when this process ends."""
+    with NamedTemporaryFile(
+        "w", prefix="launch_params_", suffix=".yaml", dir=_folder().name, delete=False
+    ) as file:
+        file.write(text)
+    return Path(file.name)
+
+
+@cache
+def _folder() -> "TemporaryDirectory[str]":
+    return TemporaryDirectory(prefix="navette_launch_")

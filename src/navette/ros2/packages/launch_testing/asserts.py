@@ -1,11 +1,13 @@
 """Assertions about the output and the exit codes of processes."""
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from navette.ros2.packages.launch.events.process import ProcessExited
 from navette.ros2.packages.launch_testing.process_selection import (
+    NO_CMD_ARGS,
     NoMatchingProcessException,
     resolveProcesses,
 )
@@ -21,6 +23,7 @@ __all__ = [
     "EXIT_SIGKILL",
     "EXIT_SIGQUIT",
     "EXIT_SIGSEGV",
+    "NO_CMD_ARGS",
     "NoMatchingProcessException",
     "SequentialTextChecker",
     "assertExitCodes",
@@ -40,7 +43,7 @@ def assertExitCodes(  # noqa: N802 - ROS 2's name
     proc_info: Any,
     allowable_exit_codes: Sequence[int] = (EXIT_OK,),
     process: Any = None,
-    cmd_args: str | None = None,
+    cmd_args: Any = None,
     *,
     strict_proc_matching: bool = True,
 ) -> None:
@@ -57,7 +60,8 @@ def assertExitCodes(  # noqa: N802 - ROS 2's name
         cmd_args=cmd_args,
         strict_proc_matching=strict_proc_matching,
     )
-    for event in (proc_info[action] for action in found):
+    by_action = {event.action: event for event in proc_info}
+    for event in (by_action[action] for action in found):
         assert isinstance(event, ProcessExited), f"{event.process_name} still runs"
         assert event.returncode in allowable_exit_codes, (
             f"{event.process_name} ended with code {event.returncode}; allowed: "
@@ -69,7 +73,7 @@ def assertInStream(  # noqa: N802 - ROS 2's name
     proc_output: Any,
     expected_output: Any,
     process: Any,
-    cmd_args: str | None = None,
+    cmd_args: Any = None,
     *,
     output_filter: Callable[[str], str] | None = None,
     strict_proc_matching: bool = True,
@@ -124,10 +128,14 @@ def _text(proc_output: Any, action: Any, stream: str) -> str:
 
 
 class SequentialTextChecker:
-    """Finds texts one after another, each behind the one before."""
+    """Finds texts one after another, each behind the one before.
 
-    def __init__(self, output: str) -> None:
-        self._output = output
+    Args:
+        output: pieces of output, or one text.
+    """
+
+    def __init__(self, output: Iterable[str]) -> None:
+        self._output = "".join(output)
         self._position = 0
 
     def assertInText(self, msg: Any) -> bool:  # noqa: N802 - ROS 2's name
@@ -140,23 +148,26 @@ class SequentialTextChecker:
         Args:
             msg: a text or a compiled pattern.
         """
-        rest = self._output[self._position :]
-        if isinstance(msg, str):
-            start = rest.find(msg)
-            end = start + len(msg)
-        else:
-            found = msg.search(rest)
-            start, end = found.span() if found else (-1, -1)
-        if start < 0:
-            raise AssertionError(f"{msg!r} not found in {rest[:2000]!r}")
-        self._position += end
+        pattern = re.compile(re.escape(msg)) if isinstance(msg, str) else msg
+        found = pattern.search(self._output, self._position)
+        if found is None:
+            raise AssertionError(
+                f"{msg!r} not found after these lines:\n{self.get_nearby_lines()}"
+            )
+        self._position = found.end()
         return True
+
+    def get_nearby_lines(self) -> str:
+        """Return the line that was matched last, and two lines before and after it."""
+        lines = self._output.splitlines()
+        at = self._output.count("\n", 0, max(self._position - 1, 0))
+        return "\n".join(lines[max(at - 2, 0) : at + 3])
 
 
 @contextmanager
 def assertSequentialStdout(  # noqa: N802 - ROS 2's name
-    proc_output: Any, process: Any, cmd_args: str | None = None
+    proc_output: Any, process: Any, cmd_args: Any = None
 ) -> Iterator[SequentialTextChecker]:
     """Provide a checker of the order of a process's standard output."""
     action = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)[0]
-    yield SequentialTextChecker(_text(proc_output, action, "stdout"))
+    yield SequentialTextChecker([_text(proc_output, action, "stdout")])

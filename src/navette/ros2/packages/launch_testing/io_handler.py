@@ -8,38 +8,46 @@ from navette.ros2.packages.launch.events.process import ProcessIO
 from navette.ros2.packages.launch_testing.asserts import assertInStream
 from navette.ros2.packages.launch_testing.process_selection import (
     NoMatchingProcessException,
-    resolveProcesses,
 )
 
 
 class IoHandler:
-    """Events of output, by process."""
+    """Events of output, by name of the process."""
 
     def __init__(self) -> None:
-        self._events: dict[Any, list[ProcessIO]] = {}
+        self._sequence: list[ProcessIO] = []
+        self._names: dict[str, None] = {}
 
-    def track(self, action: Any) -> None:
+    def track(self, process_name: str) -> None:
         """Add a process that has not written anything yet."""
-        self._events.setdefault(action, [])
+        self._names[process_name] = None
 
     def append(self, process_io: ProcessIO) -> None:
-        self._events.setdefault(process_io.action, []).append(process_io)
+        self._sequence.append(process_io)
+        self._names[process_io.process_name] = None
 
     def __iter__(self) -> Iterator[ProcessIO]:
-        return iter([each for events in self._events.values() for each in events])
+        """Iterate over all events in their order."""
+        return iter(list(self._sequence))
 
     def processes(self) -> list[Any]:
-        """Return the actions of the processes."""
-        return list(self._events)
+        """Return the actions of the processes that have written something."""
+        return list(dict.fromkeys(event.action for event in self._sequence))
 
     def process_names(self) -> list[str]:
         """Return the names of the processes (``talker-1``)."""
-        return [action.process_details["name"] for action in self._events]
+        return list(self._names)
 
     def __getitem__(self, key: Any) -> list[ProcessIO]:
-        """Return the events of a process, given by action or by name."""
-        found = resolveProcesses(self, process=key)
-        return list(self._events[found[0]])
+        """Return the events of a process, given by action or by name.
+
+        Raises:
+            KeyError: no such process.
+        """
+        name = key if isinstance(key, str) else key.process_details["name"]
+        if name not in self._names:
+            raise KeyError(name)
+        return [event for event in self._sequence if event.process_name == name]
 
 
 class ActiveIoHandler(IoHandler):
@@ -54,9 +62,9 @@ class ActiveIoHandler(IoHandler):
         """Notified at each event."""
         return self._changed
 
-    def track(self, action: Any) -> None:
+    def track(self, process_name: str) -> None:
         with self._changed:
-            super().track(action)
+            super().track(process_name)
             self._changed.notify_all()
 
     def append(self, process_io: ProcessIO) -> None:

@@ -33,13 +33,13 @@ class TestRun:
         name: str,
         test_description_function: Callable[..., Any],
         param_args: Mapping[str, Any],
-        pre_shutdown_tests: unittest.TestSuite,
-        post_shutdown_tests: unittest.TestSuite,
+        pre_shutdown_tests: Iterable[Any],
+        post_shutdown_tests: Iterable[Any],
     ) -> None:
         self.name = name
         self.param_args = dict(param_args)
-        self.pre_shutdown_tests = pre_shutdown_tests
-        self.post_shutdown_tests = post_shutdown_tests
+        self.pre_shutdown_tests = unittest.TestSuite(pre_shutdown_tests)
+        self.post_shutdown_tests = unittest.TestSuite(post_shutdown_tests)
         self._describe = test_description_function
         base = inspect.unwrap(
             getattr(test_description_function, "func", self._describe)
@@ -139,7 +139,7 @@ def _suite(module: ModuleType, *, after_shutdown: bool) -> unittest.TestSuite:
         for each in vars(module).values()
         if inspect.isclass(each)
         and issubclass(each, unittest.TestCase)
-        and each.__module__ == module.__name__
+        and each.__module__.partition(".")[0] != "unittest"
         and getattr(each, "__post_shutdown_test__", False) == after_shutdown
     ]
     # A class of its own for each run: what setUpClass gets belongs to one run.

@@ -33,11 +33,20 @@ class ProcInfoHandler:
 
     def process_names(self) -> list[str]:
         """Return the names of the processes (``talker-1``)."""
-        return [action.process_details["name"] for action in self._events]
+        return [event.process_name for event in self._events.values()]
 
     def __getitem__(self, key: Any) -> RunningProcessEvent:
-        """Return the last event of a process, given by action or by name."""
-        return self._events[resolveProcesses(self, process=key)[0]]
+        """Return the last event of a process, given by action or by name.
+
+        Raises:
+            KeyError: no such process.
+        """
+        if not isinstance(key, str):
+            return self._events[key]
+        for event in self._events.values():
+            if event.process_name == key:
+                return event
+        raise KeyError(key)
 
 
 class ActiveProcInfoHandler(ProcInfoHandler):
@@ -58,13 +67,13 @@ class ActiveProcInfoHandler(ProcInfoHandler):
             self._changed.notify_all()
 
     def assertWaitForShutdown(  # noqa: N802 - ROS 2's name
-        self, process: Any, cmd_args: str | None = None, *, timeout: float = 10
+        self, process: Any, cmd_args: Any = None, *, timeout: float = 10
     ) -> None:
         """Fail if a process does not exit within ``timeout`` seconds."""
         self._wait_for("exit", (ProcessExited,), process, cmd_args, timeout)
 
     def assertWaitForStartup(  # noqa: N802 - ROS 2's name
-        self, process: Any, cmd_args: str | None = None, *, timeout: float = 10
+        self, process: Any, cmd_args: Any = None, *, timeout: float = 10
     ) -> None:
         """Fail if a process does not start within ``timeout`` seconds."""
         kinds = (ProcessStarted, ProcessExited)

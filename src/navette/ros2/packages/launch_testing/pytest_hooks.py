@@ -1,6 +1,7 @@
 """pytest's collection of files with ``generate_test_description``."""
 
 import importlib.util
+import re
 import unittest
 from collections.abc import Iterator
 from pathlib import Path
@@ -70,4 +71,5 @@ class LaunchTestModule(pytest.File):
 
 def is_launch_test(path: Path) -> bool:
     """Whether a file defines a test description."""
-    return f"def {FUNCTION}(" in path.read_text("utf-8", errors="replace")
+    text = path.read_text("utf-8", errors="replace")
+    return re.search(rf"^def {FUNCTION}\(", text, re.MULTILINE) is not None

@@ -82,7 +82,7 @@ class _Run:
     def _handlers(self) -> list[Any]:
         def started(event: Any, context: Any) -> None:
             self._info.append(event)
-            self._output.track(event.action)
+            self._output.track(event.process_name)
 
         def exited(event: Any, context: Any) -> None:
             self._info.append(event)

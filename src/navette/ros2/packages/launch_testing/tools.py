@@ -1,7 +1,9 @@
 """Processes that a test starts and ends itself."""
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from threading import Condition
 from typing import Any
 
@@ -18,46 +20,85 @@ from navette.ros2.packages.launch.event_handlers import (
 )
 from navette.ros2.packages.launch.events import matches_action
 from navette.ros2.packages.launch.events.process import ProcessExited, ShutdownProcess
-from navette.ros2.packages.launch_testing.text_matching import make_matcher
+from navette.ros2.packages.launch_testing.text_matching import (
+    lines_match,
+    text_matches,
+    without_colours,
+)
 
-__all__ = ["ProcessProxy", "basic_output_filter", "expect_output", "launch_process"]
+__all__ = [
+    "ProcessProxy",
+    "basic_output_filter",
+    "expect_output",
+    "expected_output_from_file",
+    "launch_process",
+]
+
+
+_FILTERED_PREFIXES = ("pid", "rc")
 
 
 def expect_output(
-    *,
-    expected_lines: list[Any] | None = None,
-    expected_text: Any = None,
     text: str | None = None,
+    *,
     lines: list[str] | None = None,
+    expected_text: Any = None,
+    expected_lines: Any = None,
+    strip_ansi_escape_sequences: bool = True,
     strict: bool = False,
 ) -> bool:
-    """Return whether output has the expected lines or text, ``strict``: only these."""
+    """Return whether output has the expected lines or text, ``strict``: only these.
+
+    Raises:
+        ValueError: both text and lines, or neither of them.
+    """
+    if (text is None) == (lines is None):
+        raise ValueError("Either lines or text, but not both, must be specified")
+    if (expected_text is None) == (expected_lines is None):
+        raise ValueError(
+            "Either expected lines or text, but not both, must be specified"
+        )
     written = text if text is not None else "\n".join(lines or [])
-    expected = expected_text if expected_text is not None else expected_lines
-    if strict and isinstance(expected, str):
-        return written.split("\n") == expected.split("\n")
-    if (
-        strict
-        and isinstance(expected, list)
-        and all(isinstance(line, str) for line in expected)
-    ):
-        return written.splitlines() == expected
-    return make_matcher(expected)(written)
+    if strip_ansi_escape_sequences:
+        written = without_colours(written)
+    if expected_text is not None:
+        return text_matches(written, expected_text, strict=strict)
+    return lines_match(written.splitlines(), expected_lines, strict=strict)
+
+
+def expected_output_from_file(path: str, encoding: str | None = None) -> list[Any]:
+    """Return the lines of ``path.txt``, or the patterns of ``path.regex``.
+
+    Raises:
+        RuntimeError: neither of the files exists.
+    """
+    for suffix, kind in ((".txt", str), (".regex", re.compile)):
+        file = Path(f"{path}{suffix}")
+        if file.is_file():
+            return [kind(line) for line in file.read_text(encoding).splitlines()]
+    raise RuntimeError(f"could not find {path}.txt or {path}.regex")
 
 
 def basic_output_filter(
-    *, filtered_prefixes: list[str] | None = None, filtered_patterns: Any = None
+    filtered_prefixes: Iterable[str] | None = None,
+    filtered_patterns: Iterable[Any] | None = None,
 ) -> Callable[[str], str]:
-    """Return a function that removes lines by their start or by a pattern."""
-    prefixes = tuple(filtered_prefixes or ())
-    patterns = list(filtered_patterns or ())
+    """Return a function that removes lines by their start or by a pattern.
+
+    Args:
+        filtered_prefixes: default: ``pid`` and ``rc``.
+    """
+    prefixes = tuple(
+        _FILTERED_PREFIXES if filtered_prefixes is None else filtered_prefixes
+    )
+    patterns = [re.compile(each) for each in filtered_patterns or ()]
 
     def remove(output: str) -> str:
         lines = output.splitlines(keepends=True)
         return "".join(
             line
             for line in lines
-            if not line.startswith(prefixes or ("\0",))
+            if not line.startswith(prefixes)
             and not any(pattern.match(line) for pattern in patterns)
         )
 
@@ -102,10 +143,12 @@ class ProcessProxy:
             return changed.wait_for(lambda: bool(holds(self.output)), timeout)
 
     def _text(self, *streams: str) -> str:
-        if self.target_process_action not in self._output.processes():
-            return ""
-        events = self._output[self.target_process_action]
-        parts = [e.text for e in events if any(getattr(e, s) for s in streams)]
+        parts = [
+            event.text
+            for event in self._output
+            if event.action is self.target_process_action
+            and any(getattr(event, stream) for stream in streams)
+        ]
         return self._filter(b"".join(parts).decode(errors="replace"))
 
     @property

@@ -13,6 +13,7 @@ from navette.ros2.packages.launch.frontend import (
     parse_launch_text,
     parse_substitution,
 )
+from navette.runtime.parameter_files import read_parameter_file
 
 XML = """<launch version="0.1.1">
   <arg name="robot" default="burger" description="which">
@@ -121,15 +122,23 @@ def test_a_file_with_all_tags(
     assert code == 0, launch.errors
     node, tool = launch.runner.started[0], launch.runner.started[1]
     assert node.command.label == "talker-1"
-    assert node.command.words == [
+    words = node.command.words
+    files = [Path(words[i + 1]) for i, w in enumerate(words) if w == "--params-file"]
+    assert [word for word in words if Path(word) not in files] == [
         "talker", "-x", "a b", "3",
-        "--ros-args", "--log-level", "debug",
+        "--ros-args", "--log-level", "debug", "--ros-args",
         "-r", "__node:=t", "-r", "__ns:=/burger/in",
-        "-p", "shared:=1.5",
-        "-p", 'word:="hello"', "-p", "number:=3", "-p", 'text:="3"',
-        "-p", "list:=[1, 2]", "-p", "deep.inner:=true",
+        "-p", "shared:=1.5", *["--params-file"] * 5,
         "-r", "a:=b", "-r", "chatter:=/talk",
     ]  # fmt: skip
+    values: dict[str, Any] = {}
+    for file in files:
+        ((name, own),) = read_parameter_file(file)
+        assert name == "/burger/in/t"
+        values |= own
+    assert values == {
+        "word": "hello", "number": 3, "text": "3", "list": [1, 2], "deep.inner": True,
+    }  # fmt: skip
     assert node.command.env["Y"] == "y"
     assert node.command.env["NAVETTE_X"] == "x"
     assert tool.command.words == ["tool", "--flag", "burger"]
@@ -138,7 +147,9 @@ def test_a_file_with_all_tags(
     assert "late" in caplog.text
     assert launch.labels == ["talker-1", "named-2", "talker-3"]
     assert launch.runner.started[2].at_s == 2.0
-    described = parse_launch_file(file).get_launch_arguments()
+    described = parse_launch_file(
+        demo / "launch" / f"all.launch.{ending}"
+    ).get_launch_arguments()
     assert [a.name for a in described] == ["robot", "count"]
     assert described[0].choices == ["burger", "waffle"]
 

@@ -1,18 +1,20 @@
 """Command lines of nodes: names, namespaces, parameters, remappings, containers."""
 
-import json
-import math
+import os
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from navette.errors import ParameterError
+from navette.ros2.packages.launch import LaunchContext
 from navette.ros2.packages.launch.actions import (
-    DeclareLaunchArgument,
     GroupAction,
     LogInfo,
+    OpaqueFunction,
     SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
 )
 from navette.ros2.packages.launch.conditions import IfCondition
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
@@ -26,7 +28,8 @@ from navette.ros2.packages.launch_ros.actions import (
     SetParameter,
     SetParametersFromFile,
     SetRemap,
-    SetUseSimTime,
+    SetROSLogDir,
+    get_composable_node_load_request,
 )
 from navette.ros2.packages.launch_ros.descriptions import (
     ComposableNode,
@@ -34,14 +37,15 @@ from navette.ros2.packages.launch_ros.descriptions import (
     ParameterFile,
     ParameterValue,
 )
-from navette.ros2.packages.launch_ros.node_arguments import parameter_text
 from navette.ros2.packages.launch_ros.substitutions import (
     ExecutableInPackage,
     FindPackagePrefix,
     FindPackageShare,
 )
 from navette.ros2.packages.launch_ros.substitutions import Parameter as SetValue
-from navette.runtime.parameter_files import parse_value
+from navette.ros2.packages.launch_ros.utilities import get_node_name_count
+from navette.runtime import Parameter as NodeParameter
+from navette.runtime.parameter_files import read_parameter_file
 
 SCRIPT = "#!/usr/bin/env python3\n"
 
@@ -55,12 +59,22 @@ def program(tmp_path: Path) -> str:
 
 def ros_args(launch: Any, index: int = 0) -> list[str]:
     words: list[str] = launch.argv[index]
-    return words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
+    return words[words.index("--ros-args") + 1 :]
+
+
+def blocks(words: list[str]) -> list[Any]:
+    """Return the parameters of words: rules, and contents of files."""
+    pairs = pairwise(words)
+    return [
+        word if flag == "-p" else read_parameter_file(word)
+        for flag, word in pairs
+        if flag in ("-p", "--params-file")
+    ]
 
 
 def test_the_simplest_node_has_no_arguments(launch: Any, program: str) -> None:
     launch.run(Node(executable=program))
-    assert launch.argv == [[program]]
+    assert launch.argv == [[program, "--ros-args"]]
     assert launch.labels == ["prog-1"]
     assert launch.runner.started[0].command.program.file == Path(program)
     assert not launch.runner.started[0].command.own_process
@@ -127,48 +141,49 @@ def test_parameters_of_every_kind(launch: Any, program: str, tmp_path: Path) -> 
     )
     assert not launch.errors
     words = ros_args(launch)
-    given = [w for w in words if ":=" in w or w.startswith("/")]
-    assert given == [
-        "__node:=n",
-        "int:=1",
-        "float:=2.0",
-        "flag:=true",
-        'text:="3"',
-        f'path:="{tmp_path}"',
-        'list:=["a", "b"]',
-        "from_arg:=2",
-        'joined:="2x"',
-        'forced:="2"',
-        "as_float:=2.0",
-        "nested.deep:=1",
-        "nested.2:=2",
-        str(file),
-        str(file),
-        "single:=[1.5]",
-    ]
+    assert words[:2] == ["-r", "__node:=n"]
+    values = {
+        "int": 1, "float": 2.0, "flag": True, "text": "3", "path": str(tmp_path),
+        "list": ["a", "b"], "from_arg": 2, "joined": "2x", "forced": "2",
+        "as_float": 2.0, "nested.deep": 1, "nested.2": 2,
+    }  # fmt: skip
+    of_file = [("/n", {"x": 1})]
+    assert blocks(words) == [[("/**", values)], of_file, of_file, "single:=[1.5]"]
+
+
+def test_parameters_of_a_full_name_override_those_of_patterns(
+    launch: Any, program: str
+) -> None:
+    node = Node(executable=program, name="n", namespace="a", parameters=[{"x": 1}])
+    launch.run(node)
+    assert not launch.errors
+    assert blocks(ros_args(launch)) == [[("/a/n", {"x": 1})]]
 
 
 @pytest.mark.parametrize(
     "value",
-    [True, 0, -5, 1.0, 1e300, -2.5e-7, "", "true", "1.0", "é\n\"'", "[1]", [1, 2],
-     [0.1, 1e22], ["a", "b, c"], [True], math.inf, -math.inf, "~", "2020-01-01"],
+    [None, object(), {1, 2}, [], [1, [2]], [1, "a"], {5: 1}, {"deep": {5: 1}},
+     {"deep": {"x": {1}}}],
 )  # fmt: skip
-def test_values_survive_formatting_and_parsing(value: object) -> None:
-    found = parse_value(parameter_text("x", value))
-    assert found == value
-    assert type(found) is type(value)
-    assert math.isnan(parse_value(parameter_text("x", math.nan)))
+def test_values_that_parameters_cannot_have(
+    launch: Any, program: str, value: object
+) -> None:
+    launch.run(OpaqueFunction(function=lambda context: node_with(program, value)))
+    assert "parameter" in launch.errors or "expected" in launch.errors
 
 
-def test_an_invalid_parameter_value(launch: Any, program: str) -> None:
-    with pytest.raises(ParameterError, match="expected a bool"):
-        parameter_text("x", object())
-    launch.run(Node(executable=program, parameters=[{"x": None}]))
-    assert "parameter 'x': None" in launch.errors
-    with pytest.raises(InvalidLaunchValueError, match="expected a list"):
-        Node(executable=program, parameters={"x": 1})
+def node_with(program: str, value: object) -> list[Node]:
+    return [Node(executable=program, parameters=[{"x": value}])]
+
+
+def test_parameters_of_the_wrong_form(program: str) -> None:
+    for wrong in ({"x": 1}, "file.yaml", [5.0]):
+        with pytest.raises(TypeError, match="expected a"):
+            Node(executable=program, parameters=wrong)  # type: ignore[arg-type]
     with pytest.raises(InvalidLaunchValueError, match="int, float, bool, str"):
         ParameterValue(1, value_type=dict)
+    with pytest.raises(TypeError):
+        ParameterValue("1", value_type=int)
 
 
 @pytest.mark.parametrize(
@@ -217,16 +232,13 @@ def test_substitutions_in_a_parameter_file(
 ) -> None:
     file = tmp_path / "p.yaml"
     file.write_text("/**:\n  ros__parameters: {x: $(var v)}\n")
-    read = []
-    launch.runner.behaviour = lambda p: read.append(
-        Path(p.command.words[-1]).read_text()
-    )
-    launch.run(
-        Node(executable=program, parameters=[ParameterFile(file, allow_substs=True)]),
-        v="7",
-    )
-    assert read == ["/**:\n  ros__parameters: {x: 7}\n"]
-    assert not Path(launch.argv[0][-1]).exists()
+    given = ParameterFile(file, allow_substs=True)
+    launch.run(Node(executable=program, parameters=[given]), v="7")
+    assert blocks(ros_args(launch)) == [[("/**", {"x": 7})]]
+    copy = Path(launch.argv[0][-1])
+    assert copy == given.param_file
+    given.cleanup()
+    assert not copy.exists()
 
 
 def test_settings_of_a_scope_apply_to_its_nodes(
@@ -235,7 +247,7 @@ def test_settings_of_a_scope_apply_to_its_nodes(
     file = tmp_path / "all.yaml"
     file.write_text("/**:\n  ros__parameters: {y: 1}\n")
     launch.run(
-        SetUseSimTime(True),
+        SetParameter("use_sim_time", "true"),
         GroupAction(
             [
                 SetParameter("x", 1.5),
@@ -249,17 +261,19 @@ def test_settings_of_a_scope_apply_to_its_nodes(
         ),
         Node(executable=program),
     )
-    assert ros_args(launch, 0) == [
-        "-p", "use_sim_time:=true", "-p", "x:=1.5", "--params-file", str(file),
-        "-p", "x:=2", "-r", "a:=b", "-r", "c:=d",
+    words = ros_args(launch, 0)
+    assert blocks(words) == [
+        "use_sim_time:=true", "x:=1.5", [("/**", {"y": 1})], [("/**", {"x": 2})],
     ]  # fmt: skip
+    assert words[-4:] == ["-r", "a:=b", "-r", "c:=d"]
     assert ros_args(launch, 1) == ["-p", "use_sim_time:=true"]
     assert "x is 1.5" in caplog.text
 
 
-def test_remappings_are_pairs(launch: Any, program: str) -> None:
-    launch.run(Node(executable=program, remappings=["a:=b"]))
-    assert "expected a pair, as in ('from', 'to')" in launch.errors
+@pytest.mark.parametrize("rule", ["a:=b", ["a", "b"], ("a", "b", "c")])
+def test_remappings_are_pairs(program: str, rule: object) -> None:
+    with pytest.raises(TypeError, match=r"expected a pair, as in \('from', 'to'\)"):
+        Node(executable=program, remappings=[rule])
 
 
 def test_options_that_require_a_process(
@@ -300,63 +314,81 @@ def test_packages(
         Node(package="demo", executable="tol"),
     )
     assert f"{prefix / 'share' / 'demo'} {prefix}" in caplog.text
-    assert launch.argv == [[str(tool)]]
+    assert launch.argv == [[str(tool), "--ros-args"]]
     assert launch.runner.started[0].command.program is None
     assert "unknown executable of demo 'tol'; known: tool" in launch.errors
     assert "Node('demo' 'tol')" in launch.errors
 
 
-def requests(process: Any) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in process.written.splitlines()]
-
-
-def test_components_are_loaded_into_their_container(launch: Any) -> None:
-    def part(name: str, **options: Any) -> ComposableNode:
-        return ComposableNode(package="demo", plugin="demo::Part", name=name, **options)
-
-    launch.run(
+def test_requests_to_load_components(tmp_path: Path) -> None:
+    file = tmp_path / "p.yaml"
+    file.write_text(
+        "/**:\n  ros__parameters: {x: 1, y: 2}\n"
+        "/robot/in/a:\n  ros__parameters: {x: 3}\n"
+        "/robot/in/b:\n  ros__parameters: {z: 4}\n"
+    )
+    context = LaunchContext()
+    for action in (
         PushRosNamespace("robot"),
+        SetParameter("use_sim_time", True),
+        SetRemap("s", "t"),
+    ):
+        action.execute(context)
+    node = ComposableNode(
+        package="demo",
+        plugin="demo::Part",
+        name="a",
+        namespace="in",
+        parameters=[str(file), {"w": "5"}],
+        remappings=[("u", "v")],
+        extra_arguments=[{"use_intra_process_comms": True}],
+    )
+    request = get_composable_node_load_request(node, context)
+    assert (request.package_name, request.plugin_name) == ("demo", "demo::Part")
+    assert (request.node_name, request.node_namespace) == ("a", "/robot/in")
+    assert request.remap_rules == ["s:=t", "u:=v"]
+    given = [
+        NodeParameter.from_parameter_msg(each)
+        for each in (*request.parameters, *request.extra_arguments)
+    ]
+    assert [(each.name, each.value) for each in given] == [
+        ("use_sim_time", True), ("x", 3), ("y", 2), ("w", "5"),
+        ("use_intra_process_comms", True),
+    ]  # fmt: skip
+
+
+def test_a_component_whose_condition_does_not_hold() -> None:
+    node = ComposableNode(package="p", plugin="q", condition=IfCondition("false"))
+    assert get_composable_node_load_request(node, LaunchContext()) is None
+
+
+def test_components_wait_for_their_container_until_the_shutdown(
+    launch: Any, caplog: Any
+) -> None:
+    node = ComposableNode(package="demo", plugin="demo::Part", name="a")
+    launch.run(
         ComposableNodeContainer(
-            name="box",
-            namespace="in",
-            package="rclcpp_components",
-            executable="component_container",
-            composable_node_descriptions=[
-                part("a", parameters=[{"x": 1}], remappings=[("s", "t")]),
-                part("b", condition=IfCondition("false")),
-            ],
+            name="box", namespace="in", composable_node_descriptions=[node]
         ),
         LoadComposableNodes(
-            composable_node_descriptions=[part("c", namespace="sub")],
-            target_container="in/box",
+            composable_node_descriptions=[node], target_container="bax"
         ),
+        TimerAction(period=20.0, actions=[Shutdown()]),
     )
     assert not launch.errors
     (container,) = launch.runner.started
     assert container.command.program.module == "navette.ros2.launch.container"
-    assert requests(container) == [
-        {
-            "package": "demo",
-            "plugin": "demo::Part",
-            "arguments": [
-                "-r", "__node:=a", "-r", "__ns:=/robot", "-p", "x:=1", "-r", "s:=t",
-            ],
-        },
-        {
-            "package": "demo",
-            "plugin": "demo::Part",
-            "arguments": ["-r", "__node:=c", "-r", "__ns:=/robot/sub"],
-        },
-    ]  # fmt: skip
+    assert "the container '/bax' to load 1 node(s)" in caplog.text
+    assert "containers of this launch: /in/box" in caplog.text
 
 
-def test_an_unknown_container(launch: Any) -> None:
-    launch.run(
-        DeclareLaunchArgument("c", default_value="box"),
-        LoadComposableNodes(
-            composable_node_descriptions=[], target_container=LaunchConfiguration("c")
-        ),
-    )
-    assert "unknown target_container '/box'; started containers: none" in (
-        launch.errors
-    )
+def test_names_are_counted(launch: Any, program: str, caplog: Any) -> None:
+    launch.run(*(Node(executable=program, name="n", namespace="a") for _ in range(2)))
+    assert get_node_name_count(launch.context, "/a/n") == 2
+    assert "there are now at least 2 nodes with the name /a/n" in caplog.text
+
+
+def test_a_relative_folder_of_logs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", "/logs")
+    SetROSLogDir("robot").execute(LaunchContext())
+    assert os.environ["ROS_LOG_DIR"] == "/logs/robot"

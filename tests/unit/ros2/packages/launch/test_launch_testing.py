@@ -207,7 +207,7 @@ def test_expected_output() -> None:
     assert make_matcher(["a", "c"])("a b c")
     assert not make_matcher(["c", "a"])("a b c")
     assert expect_output(expected_lines=["a", "b"], text="a\nb\n", strict=True)
-    assert not expect_output(expected_lines=["a"], text="a\nb\n", strict=True)
+    assert not expect_output(expected_lines=["b"], text="a\nb\n", strict=True)
     with pytest.raises(ValueError, match="expected text"):
         make_matcher(3)
     checker = SequentialTextChecker("one two")

@@ -31,7 +31,7 @@ class LaunchConfiguration(Substitution):
         name = self.variable_name.perform(context)
         context.known_arguments.add(name)
         if name in context.launch_configurations:
-            return context.launch_configurations[name]
+            return str(context.launch_configurations[name])
         if self._default is None:
             known = sorted(context.launch_configurations)
             raise UndeclaredConfigurationFailure(name, known)

@@ -106,7 +106,10 @@ def _yaml(value: str) -> Any:
 
 def _scalar(value: str, kind: type) -> Any:
     if kind is not bool:
-        return kind(value)
+        try:
+            return kind(value)
+        except ValueError:
+            raise ValueError(f"{value!r}: expected {kind.__name__}") from None
     found = _NUMERIC_TRUTHS.get(value, _yaml(value))
     if not isinstance(found, bool):
         raise ValueError(f"{value!r} is not a truth value; expected true or false")

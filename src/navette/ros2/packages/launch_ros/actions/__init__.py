@@ -3,6 +3,7 @@
 from navette.ros2.packages.launch_ros.actions.composition import (
     ComposableNodeContainer,
     LoadComposableNodes,
+    get_composable_node_load_request,
 )
 from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNode
 from navette.ros2.packages.launch_ros.actions.lifecycle_transition import (
@@ -37,4 +38,5 @@ __all__ = [
     "SetROSLogDir",
     "SetRemap",
     "SetUseSimTime",
+    "get_composable_node_load_request",
 ]

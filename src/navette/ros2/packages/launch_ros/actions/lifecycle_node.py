@@ -15,7 +15,7 @@ from navette.ros2.packages.launch_ros.events.lifecycle import (
     ChangeState,
     StateTransition,
 )
-from navette.ros2.packages.launch_ros.ros_node import launch_node
+from navette.ros2.packages.launch_ros.ros_adapters import get_ros_adapter
 
 _log = get_logger("launch")
 
@@ -54,7 +54,7 @@ class LifecycleNode(Node):
             return None
         self._launch = context
         super().execute(context)
-        launch_node(context).subscribe(
+        get_ros_adapter(context).subscribe(
             TransitionEvent,
             f"{self.node_name}/transition_event",
             lambda msg: context.emit_event_sync(StateTransition(action=self, msg=msg)),
@@ -93,6 +93,6 @@ class LifecycleNode(Node):
                     self.node_name,
                 )
 
-        launch_node(context).call(
+        get_ros_adapter(context).call(
             ChangeStateService, f"{self.node_name}/change_state", request, on_response
         )

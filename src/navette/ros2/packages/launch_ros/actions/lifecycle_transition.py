@@ -4,9 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from navette.msgs.lifecycle_msgs.msg import Transition
-from navette.ros2.packages.launch import Action, Event
+from navette.ros2.packages.launch import Action, Event, LaunchDescriptionEntity
+from navette.ros2.packages.launch.actions import EmitEvent, RegisterEventHandler
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-from navette.ros2.packages.launch.event_handler import CallbackHandler, EventHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import Parts
@@ -54,39 +55,40 @@ class LifecycleTransition(Action):
             for given in transition_ids
         ]
 
-    def execute(self, context: LaunchContext) -> None:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         numbers = [_number(text.perform(context)) for text in self._ids]
-        for parts in self._names:
-            _TransitionSequence(context, parts.perform(context), numbers).request_next()
+        return [
+            entity
+            for parts in self._names
+            for entity in _TransitionSequence(
+                parts.perform(context), numbers
+            ).next_request()
+        ]
 
 
 class _TransitionSequence:
     """Remaining transitions of one node."""
 
-    def __init__(
-        self, context: LaunchContext, name: str, transitions: list[int]
-    ) -> None:
-        self._context = context
+    def __init__(self, name: str, transitions: list[int]) -> None:
         self._name = name
         self._matches: Callable[[Any], bool] = matches_node_name(name)
         self._remaining = list(transitions)
-        self._handler: EventHandler | None = None
 
-    def request_next(self) -> None:
-        """Request the next transition."""
+    def next_request(self) -> list[LaunchDescriptionEntity]:
+        """Return what requests the next transition and waits for its end."""
         if not self._remaining:
-            return
+            return []
         number = self._remaining.pop(0)
         transition_state, goal = _GOALS[number]
-        self._handler = CallbackHandler(
+        handler = CallbackHandler(
             matcher=lambda event: self._is_end(event, transition_state),
             callback=lambda event, context: self._on_end(event, goal, number),
             handle_once=True,
         )
-        self._context.register_event_handler(self._handler)
-        self._context.emit_event_sync(
-            ChangeState(lifecycle_node_matcher=self._matches, transition_id=number)
+        request = ChangeState(
+            lifecycle_node_matcher=self._matches, transition_id=number
         )
+        return [RegisterEventHandler(handler), EmitEvent(event=request)]
 
     def _is_end(self, event: Event, transition_state: str) -> bool:
         return (
@@ -95,17 +97,19 @@ class _TransitionSequence:
             and event.start_state == transition_state
         )
 
-    def _on_end(self, event: Any, goal: str, number: int) -> None:
+    def _on_end(
+        self, event: Any, goal: str, number: int
+    ) -> list[LaunchDescriptionEntity]:
         if event.goal_state == goal:
-            self.request_next()
-        else:
-            _log.error(
-                "%s: %s ended in %s instead of %s; no more transitions",
-                self._name,
-                TRANSITIONS[number],
-                event.goal_state,
-                goal,
-            )
+            return self.next_request()
+        _log.error(
+            "%s: %s ended in %s instead of %s; no more transitions",
+            self._name,
+            TRANSITIONS[number],
+            event.goal_state,
+            goal,
+        )
+        return []
 
 
 def _number(text: str) -> int:

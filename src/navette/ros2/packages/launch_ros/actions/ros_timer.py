@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from navette.ros2.packages.launch.actions import TimerAction
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch_ros.ros_node import launch_node
+from navette.ros2.packages.launch_ros.ros_adapters import get_ros_adapter
 
 
 class RosTimer(TimerAction):
@@ -13,4 +13,4 @@ class RosTimer(TimerAction):
     def schedule(
         self, context: LaunchContext, seconds: float, fire: Callable[[], None]
     ) -> None:
-        launch_node(context).after(seconds, fire)
+        get_ros_adapter(context).after(seconds, fire)

@@ -3,19 +3,25 @@
 from pathlib import Path
 from typing import Any
 
-from navette.ros2.packages.launch import Action, SomeSubstitutionsType
+from navette.ros2.packages.launch import (
+    Action,
+    SomeSubstitutionsType,
+    Substitution,
+)
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.typed import perform_bool
-from navette.ros2.packages.launch_ros.parameter_descriptions import (
-    Parameter,
-    ParameterFile,
-)
+from navette.ros2.packages.launch_ros.ros_adapters import get_ros_adapter
 from navette.ros2.packages.launch_ros.scope import (
     add_global_parameter,
     add_global_remap,
     push_namespace,
 )
+from navette.ros2.packages.launch_ros.utilities.parameters import (
+    evaluate_parameter_dict,
+    normalize_parameter_dict,
+)
+from navette.runtime.log_sinks import get_logging_directory
 
 
 class PushRosNamespace(Action):
@@ -37,23 +43,34 @@ class SetParameter(Action):
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name = Parts.of(name)
-        self.value = value
-        self._parameter = Parameter(self.name, value)
+        self._parameter = normalize_parameter_dict({tuple(Parts.of(name)): value})
+
+    @property
+    def name(self) -> tuple[Substitution, ...]:
+        return next(iter(self._parameter))
+
+    @property
+    def value(self) -> Any:
+        return self._parameter[self.name]
 
     def execute(self, context: LaunchContext) -> None:
-        add_global_parameter(context, self._parameter.evaluate(context))
+        for item in evaluate_parameter_dict(context, self._parameter).items():
+            add_global_parameter(context, item)
 
 
-class SetUseSimTime(SetParameter):
-    """Sets ``use_sim_time`` of the nodes."""
+class SetUseSimTime(Action):
+    """Sets ``use_sim_time`` of the launch's own node, which ROSTimer uses.
+
+    ``SetParameter("use_sim_time", True)`` sets that of the nodes.
+    """
 
     def __init__(self, value: Any, **kwargs: Any) -> None:
-        super().__init__("use_sim_time", value, **kwargs)
+        super().__init__(**kwargs)
+        self.value = value
 
     def execute(self, context: LaunchContext) -> None:
         value = perform_bool(context, self.value)
-        add_global_parameter(context, ("use_sim_time", value))
+        get_ros_adapter(context).set_use_sim_time(value)
 
 
 class SetParametersFromFile(Action):
@@ -61,10 +78,10 @@ class SetParametersFromFile(Action):
 
     def __init__(self, filename: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._file = ParameterFile(filename)
+        self._file = Parts.of(filename)
 
     def execute(self, context: LaunchContext) -> None:
-        add_global_parameter(context, Path(self._file.evaluate(context)))
+        add_global_parameter(context, self._file.perform(context))
 
 
 class SetRemap(Action):
@@ -89,11 +106,13 @@ class SetRemap(Action):
 
 
 class SetROSLogDir(Action):
-    """Sets the folder of log files."""
+    """Sets the folder of log files; a relative one is below the present folder."""
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.log_dir = Parts.of(new_log_dir)
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment["ROS_LOG_DIR"] = self.log_dir.perform(context)
+        variables = context.environment
+        present = variables.get("ROS_LOG_DIR") or get_logging_directory()
+        variables["ROS_LOG_DIR"] = str(Path(present) / self.log_dir.perform(context))

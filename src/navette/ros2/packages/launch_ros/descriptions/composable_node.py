@@ -1,19 +1,18 @@
 """Description of a component."""
 
-import json
 from collections.abc import Iterable
 from typing import Any
 
 from navette.ros2.packages.launch import Condition
-from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import Parts
-from navette.ros2.packages.launch_ros.node_arguments import (
-    evaluate_parameters,
-    evaluate_remaps,
-    ros_arguments,
+from navette.ros2.packages.launch_ros.utilities.parameters import (
+    Normalized,
+    normalize_parameters,
 )
-from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
-from navette.runtime.names import validate_node_name
+from navette.ros2.packages.launch_ros.utilities.remap_rules import (
+    RemapRule,
+    normalize_remap_rules,
+)
 
 
 class ComposableNode:
@@ -24,7 +23,8 @@ class ComposableNode:
         plugin: the class: ``package::Class``, ``package.module.Class``,
             ``package.module:Class``, or a name registered as a component.
         name, namespace, parameters, remappings: as for a Node.
-        extra_arguments: accepted without effect.
+        extra_arguments: parameters for the container, such as
+            ``use_intra_process_comms``; Navette's own container ignores them.
         condition: whether to load the class.
     """
 
@@ -40,38 +40,52 @@ class ComposableNode:
         extra_arguments: Iterable[Any] | None = None,
         condition: Condition | None = None,
     ) -> None:
-        self.package = Parts.of(package)
-        self.node_plugin = Parts.of(plugin)
-        self.node_name = Parts.optional(name)
-        self.node_namespace = Parts.optional(namespace)
-        self.parameters = list(parameters or ())
-        self.remappings = list(remappings or ())
-        self.extra_arguments = list(extra_arguments or ())
-        self.condition = condition
+        self.__package = Parts.of(package)
+        self.__node_plugin = Parts.of(plugin)
+        self.__node_name = Parts.optional(name)
+        self.__node_namespace = Parts.optional(namespace)
+        self.__parameters = _normalized(parameters)
+        self.__remappings = tuple(normalize_remap_rules(remappings or ()))
+        self.__extra_arguments = _normalized(extra_arguments)
+        self.__condition = condition
+
+    @property
+    def package(self) -> Parts:
+        return self.__package
+
+    @property
+    def node_plugin(self) -> Parts:
+        return self.__node_plugin
+
+    @property
+    def node_name(self) -> Parts | None:
+        return self.__node_name
+
+    @property
+    def node_namespace(self) -> Parts | None:
+        return self.__node_namespace
+
+    @property
+    def parameters(self) -> Normalized:
+        return self.__parameters
+
+    @property
+    def remappings(self) -> tuple[RemapRule, ...]:
+        return self.__remappings
+
+    @property
+    def extra_arguments(self) -> Normalized:
+        return self.__extra_arguments
+
+    def condition(self) -> Condition | None:
+        """Return the condition; a method, as in ROS 2."""
+        return self.__condition
 
     def describe(self) -> str:
         return (
             f"ComposableNode({self.package.describe()} {self.node_plugin.describe()})"
         )
 
-    def load_request(self, context: LaunchContext) -> bytes:
-        """Return the load request for the container, one line of JSON."""
-        name = None
-        if self.node_name is not None:
-            name = self.node_name.perform(context)
-            validate_node_name(name)
-        own = (
-            "" if self.node_namespace is None else self.node_namespace.perform(context)
-        )
-        words = ros_arguments(
-            name,
-            joined_namespace(pushed_namespace(context), own),
-            evaluate_parameters(context, self.parameters),
-            evaluate_remaps(context, self.remappings),
-        )
-        request = {
-            "package": self.package.perform(context),
-            "plugin": self.node_plugin.perform(context),
-            "arguments": words,
-        }
-        return json.dumps(request).encode() + b"\n"
+
+def _normalized(given: Iterable[Any] | None) -> Normalized:
+    return () if given is None else normalize_parameters(given)
