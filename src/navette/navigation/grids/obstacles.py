@@ -19,8 +19,7 @@ from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.spec import FREE, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     NO_POINTS,
-    cell_coordinates,
-    local_cell_points,
+    CellMarks,
     point_radius,
 )
 from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
@@ -88,8 +87,8 @@ class ObstacleTracker:
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._seen: Layer | None = None  # what any map has shown
         self._map_ns = 0
-        # With the stamp of their map: u, v in cells of where its beams ended.
-        self._map_uv: tuple[int, NDArray[np.float64]] | None = None
+        # Where the beams of the map ended, with its stamp.
+        self._map_marks: tuple[int, CellMarks] | None = None
         self._map_hits, self._hits = HitPoints(), HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._placed: OccupancyGrid | None = None  # newest that was placed
@@ -194,11 +193,11 @@ class ObstacleTracker:
         """Return points of this radius for lethal cells of the map."""
         assert self._map is not None, "called with a map"
         spec = self._map[1]
-        if self._map_uv is None or self._map_uv[0] != self._map_ns:
+        if self._map_marks is None or self._map_marks[0] != self._map_ns:
             hits = self._map_hits.at(self._map_ns)
-            here = NO_POINTS if hits is None else hits
-            self._map_uv = self._map_ns, cell_coordinates(spec, here)
-        return local_cell_points(self._map_uv[1], spec, centers, radius)
+            marks = CellMarks.of(spec, NO_POINTS if hits is None else hits)
+            self._map_marks = self._map_ns, marks
+        return self._map_marks[1].points(spec, centers, radius)
 
     def _unseen(
         self, here: Layer, around: Pose2, reach_m: float

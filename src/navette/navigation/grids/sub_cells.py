@@ -7,7 +7,7 @@ centre with half a cell around it.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ Points = NDArray[np.float64]
 
 NO_POINTS = np.empty((0, 2))
 
+_NO_CELL = np.iinfo(np.int64).min
+
 
 def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int64]:
     """Replace the masks of the cells that contain points; return these cells (M, 2).
@@ -40,21 +42,45 @@ def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int6
         spec: its geometry.
         points: (N, 2) in the grid's frame, m; those outside are ignored.
     """
-    cells: NDArray[np.int64] = _mark(masks, cell_coordinates(spec, points), 0, 0)
+    cells: NDArray[np.int64] = _mark(masks, cell_coordinates(spec, points))
     return cells
 
 
-def points_by_cell(
-    masks: Masks,
-    spec: GridSpec,
-    cells: NDArray[np.int64],
-    first: tuple[int, int] = (0, 0),
-) -> tuple[Points, NDArray[np.int64]]:
-    """Return the marked points (N, 2) of cells (M, 2), m, and the cell (N,) of each.
+class CellMarks(NamedTuple):
+    """Masks of the cells of a grid that have marked points, for looking up a few.
 
-    ``first``: row and column of the grid at which the masks begin.
+    A hash table with linear probing, as long as a power of two.
+
+    Attributes:
+        cells: (N,) row times 2³² plus column; ``_NO_CELL`` where the table is empty.
+        masks: (N,) of these cells.
     """
-    uv, which = _points_by_cell(masks, np.ascontiguousarray(cells, np.int64), *first)
+
+    cells: NDArray[np.int64]
+    masks: Masks
+
+    @classmethod
+    def of(cls, spec: GridSpec, points: Points) -> "CellMarks":
+        """Args: geometry of the grid; points (N, 2) in its frame, m."""
+        size = 1 << (2 * len(points)).bit_length()
+        marks = cls(np.full(size, _NO_CELL), np.zeros(size, np.uint64))
+        _add_marks(marks, points, grid_frame(spec))
+        return marks
+
+    def points(self, spec: GridSpec, centers: Points, radius_m: float) -> Points:
+        """Return :func:`cell_points` of the lethal cells with these centres (M, 2)."""
+        points: Points = _marked_or_circle(
+            self, centers, grid_frame(spec), _circle(spec, radius_m)
+        )
+        return points
+
+
+def points_by_cell(
+    masks: Masks, spec: GridSpec, cells: NDArray[np.int64]
+) -> tuple[Points, NDArray[np.int64]]:
+    """Return the marked points (N, 2) of cells (M, 2), m, and the cell (N,) of each."""
+    of_each = masks[cells[:, 0], cells[:, 1]]
+    uv, which = _points_by_cell(of_each, np.ascontiguousarray(cells, np.int64))
     return spec.origin.apply(uv * spec.resolution), which
 
 
@@ -79,22 +105,22 @@ def marked_points(
 
 
 def cell_points(
-    masks: Masks,
-    spec: GridSpec,
-    cells: NDArray[np.int64],
-    radius_m: float,
-    first: tuple[int, int] = (0, 0),
+    masks: Masks, spec: GridSpec, cells: NDArray[np.int64], radius_m: float
 ) -> Points:
     """Return points (N, 2), m, that with this radius stand for lethal cells (M, 2).
 
     These are the marked points, and of a cell without one a circle of points about its
-    centre: with the radius they cover the border of half a cell. ``first`` as in
-    :func:`points_by_cell`.
+    centre: with the radius they cover the border of half a cell.
+
+    Args:
+        masks: (M,) of the cells.
+        spec: geometry of the grid.
+        cells: (M, 2) row and column.
+        radius_m: of each point.
     """
     points: Points = _cell_points(
         masks,
         np.ascontiguousarray(cells, np.int64),
-        *first,
         grid_frame(spec),
         _circle(spec, radius_m),
     )
@@ -104,25 +130,6 @@ def cell_points(
 def _circle(spec: GridSpec, radius_m: float) -> Points:
     """Return points (N, 2), m, about a cell's centre that stand for the cell."""
     return max(0.0, 0.5 * spec.resolution - radius_m) * _CIRCLE
-
-
-def local_cell_points(
-    uv: Points, spec: GridSpec, centers: Points, radius_m: float
-) -> Points:
-    """Return :func:`cell_points` of a few lethal cells near each other.
-
-    Args:
-        uv: (N, 2) the grid's points as :func:`cell_coordinates`.
-        spec: geometry of the grid.
-        centers: (M, 2) in the grid's frame, m: the lethal cells.
-        radius_m: of each point.
-    """
-    if not len(centers):
-        return NO_POINTS
-    points: Points = _local_points(
-        uv, centers, grid_frame(spec), _circle(spec, radius_m)
-    )
-    return points
 
 
 def cell_coordinates(spec: GridSpec, points: Points) -> Points:
@@ -136,25 +143,20 @@ def point_radius(resolution: float) -> float:
 
 
 @kernel
-def _mark(masks: Any, uv: Any, first_row: int, first_column: int) -> Any:
-    """Mark points (N, 2) u, v in cells; return the cells (M, 2), row by row.
-
-    The masks begin at a row and column of the grid.
-    """
+def _mark(masks: Any, uv: Any) -> Any:
+    """Mark points (N, 2) u, v in cells; return the cells (M, 2), row by row."""
     height, width = masks.shape
-    low_u, high_u = float(first_column), float(first_column + width)
-    low_v, high_v = float(first_row), float(first_row + height)
     for k in range(uv.shape[0]):
         u, v = uv[k, 0], uv[k, 1]
-        if low_u <= u < high_u and low_v <= v < high_v:
-            masks[int(v) - first_row, int(u) - first_column] = 0
+        if 0.0 <= u < width and 0.0 <= v < height:
+            masks[int(v), int(u)] = 0
     indices = np.empty(uv.shape[0], np.int64)
     count = 0
     for k in range(uv.shape[0]):
         u, v = uv[k, 0], uv[k, 1]
-        if not (low_u <= u < high_u and low_v <= v < high_v):
+        if not (0.0 <= u < width and 0.0 <= v < height):
             continue
-        row, column = int(v) - first_row, int(u) - first_column
+        row, column = int(v), int(u)
         part = int(v % 1.0 * SUB_CELLS) * SUB_CELLS + int(u % 1.0 * SUB_CELLS)
         if masks[row, column] == 0:
             indices[count] = row * width + column
@@ -163,93 +165,96 @@ def _mark(masks: Any, uv: Any, first_row: int, first_column: int) -> Any:
     ordered = np.sort(indices[:count])
     cells = np.empty((count, 2), np.int64)
     for k in range(count):
-        cells[k, 0] = ordered[k] // width + first_row
-        cells[k, 1] = ordered[k] % width + first_column
+        cells[k, 0], cells[k, 1] = ordered[k] // width, ordered[k] % width
     return cells
 
 
 @kernel
-def _local_points(uv: Any, centers: Any, frame: Any, circle: Any) -> Any:
-    """Return the points of the lethal cells with these centres (M, 2)."""
+def _slot(cells: Any, row: int, column: int) -> Any:
+    """Return where a cell is in a table of :class:`CellMarks`, or belongs."""
+    cell = row * (1 << 32) + column
+    at = (row * 73856093 ^ column * 19349663) & (cells.size - 1)
+    while cells[at] != cell and cells[at] != _NO_CELL:
+        at = (at + 1) & (cells.size - 1)
+    return at
+
+
+@kernel
+def _add_marks(marks: Any, points: Any, frame: Any) -> None:
+    for k in range(points.shape[0]):
+        u, v = _in_cells(points, k, frame)
+        row, column = math.floor(v), math.floor(u)
+        at = _slot(marks.cells, row, column)
+        part_u, part_v = int((u - column) * SUB_CELLS), int((v - row) * SUB_CELLS)
+        part = min(part_v, SUB_CELLS - 1) * SUB_CELLS + min(part_u, SUB_CELLS - 1)
+        marks.cells[at] = row * (1 << 32) + column
+        marks.masks[at] |= np.uint64(1) << np.uint64(part)
+
+
+@kernel
+def _in_cells(points: Any, k: int, frame: Any) -> Any:
+    """Return u, v of a point."""
+    dx, dy = points[k, 0] - frame.x, points[k, 1] - frame.y
+    u = (frame.cos * dx + frame.sin * dy) / frame.resolution
+    v = (frame.cos * dy - frame.sin * dx) / frame.resolution
+    return u, v
+
+
+@kernel
+def _marked_or_circle(marks: Any, centers: Any, frame: Any, circle: Any) -> Any:
     cells = np.empty(centers.shape, np.int64)
+    masks = np.empty(centers.shape[0], np.uint64)
     for k in range(centers.shape[0]):
-        dx, dy = centers[k, 0] - frame.x, centers[k, 1] - frame.y
-        u = frame.cos * dx + frame.sin * dy
-        v = frame.cos * dy - frame.sin * dx
-        cells[k, 0] = math.floor(v / frame.resolution)
-        cells[k, 1] = math.floor(u / frame.resolution)
-    first_row, last_row = cells[0, 0], cells[0, 0]
-    first_column, last_column = cells[0, 1], cells[0, 1]
-    for k in range(cells.shape[0]):
-        first_row, last_row = min(first_row, cells[k, 0]), max(last_row, cells[k, 0])
-        first_column = min(first_column, cells[k, 1])
-        last_column = max(last_column, cells[k, 1])
-    shape = (last_row - first_row + 1, last_column - first_column + 1)
-    masks = np.zeros(shape, np.uint64)
-    _add_marks(masks, uv, first_row, first_column)
-    return _cell_points(masks, cells, first_row, first_column, frame, circle)
+        u, v = _in_cells(centers, k, frame)
+        cells[k, 0], cells[k, 1] = math.floor(v), math.floor(u)
+        masks[k] = marks.masks[_slot(marks.cells, cells[k, 0], cells[k, 1])]
+    return _cell_points(masks, cells, frame, circle)
 
 
 @kernel
-def _add_marks(masks: Any, uv: Any, first_row: int, first_column: int) -> None:
-    """Mark points (N, 2) u, v in cells, as :func:`_mark`, without listing the cells."""
-    height, width = masks.shape
-    low_u, high_u = float(first_column), float(first_column + width)
-    low_v, high_v = float(first_row), float(first_row + height)
-    for k in range(uv.shape[0]):
-        u, v = uv[k, 0], uv[k, 1]
-        if low_u <= u < high_u and low_v <= v < high_v:
-            part = int(v % 1.0 * SUB_CELLS) * SUB_CELLS + int(u % 1.0 * SUB_CELLS)
-            bit = np.uint64(1) << np.uint64(part)
-            masks[int(v) - first_row, int(u) - first_column] |= bit
-
-
-@kernel
-def _points_by_cell(masks: Any, cells: Any, first_row: int, first_column: int) -> Any:
+def _points_by_cell(masks: Any, cells: Any) -> Any:
     """Return the marked points (N, 2) u, v in cells, and the index of each one's."""
     count = 0
-    for k in range(cells.shape[0]):
-        mask = masks[cells[k, 0] - first_row, cells[k, 1] - first_column]
+    for k in range(masks.size):
+        mask = masks[k]
         while mask != 0:
             mask &= mask - np.uint64(1)
             count += 1
     points, which = np.empty((count, 2)), np.empty(count, np.int64)
     found = 0
-    for k in range(cells.shape[0]):
-        row, column = cells[k, 0], cells[k, 1]
-        mask = masks[row - first_row, column - first_column]
-        bit = 0
-        while mask != 0:
-            if mask & np.uint64(1):
-                points[found, 0] = column + (bit % SUB_CELLS + 0.5) / SUB_CELLS
-                points[found, 1] = row + (bit // SUB_CELLS + 0.5) / SUB_CELLS
-                which[found] = k
-                found += 1
-            mask >>= np.uint64(1)
-            bit += 1
+    for k in range(masks.size):
+        row, column, mask = cells[k, 0], cells[k, 1], masks[k]
+        for part_row in range(SUB_CELLS):
+            bits = (mask >> np.uint64(SUB_CELLS * part_row)) & np.uint64(0xFF)
+            if bits == 0:
+                continue
+            for part_column in range(SUB_CELLS):
+                if (bits >> np.uint64(part_column)) & np.uint64(1):
+                    points[found, 0] = column + (part_column + 0.5) / SUB_CELLS
+                    points[found, 1] = row + (part_row + 0.5) / SUB_CELLS
+                    which[found] = k
+                    found += 1
     return points, which
 
 
 @kernel
-def _cell_points(
-    masks: Any, cells: Any, first_row: int, first_column: int, frame: Any, circle: Any
-) -> Points:
+def _cell_points(masks: Any, cells: Any, frame: Any, circle: Any) -> Points:
     """Return the marked points, then a circle about each cell (M, 2) without one."""
-    marked, _ = _points_by_cell(masks, cells, first_row, first_column)
+    marked, _ = _points_by_cell(masks, cells)
     empty = 0
-    for k in range(cells.shape[0]):
-        empty += masks[cells[k, 0] - first_row, cells[k, 1] - first_column] == 0
+    for k in range(masks.size):
+        empty += masks[k] == 0
     points = np.empty((marked.shape[0] + empty * circle.shape[0], 2))
     for k in range(marked.shape[0]):
         u, v = marked[k, 0] * frame.resolution, marked[k, 1] * frame.resolution
         points[k, 0] = frame.x + frame.cos * u - frame.sin * v
         points[k, 1] = frame.y + frame.sin * u + frame.cos * v
     at = marked.shape[0]
-    for k in range(cells.shape[0]):
-        row, column = cells[k, 0], cells[k, 1]
-        if masks[row - first_row, column - first_column] != 0:
+    for k in range(masks.size):
+        if masks[k] != 0:
             continue
-        u, v = (column + 0.5) * frame.resolution, (row + 0.5) * frame.resolution
+        u = (cells[k, 1] + 0.5) * frame.resolution
+        v = (cells[k, 0] + 0.5) * frame.resolution
         x = frame.x + frame.cos * u - frame.sin * v
         y = frame.y + frame.sin * u + frame.cos * v
         for i in range(circle.shape[0]):

@@ -32,6 +32,16 @@ class CellWindow(NamedTuple):
         right, bottom = (math.floor(most) + 1 for most in uv.max(axis=0))
         return cls(top, bottom, left, right).grown(margin, spec.shape)
 
+    @classmethod
+    def of(cls, mask: NDArray[np.bool_]) -> "CellWindow":
+        """Return the window around the true cells of a mask (H, W); may be empty."""
+        rows = np.flatnonzero(mask.any(axis=1))
+        if rows.size == 0:
+            return cls(0, 0, 0, 0)
+        first_row, last_row = int(rows[0]), int(rows[-1]) + 1
+        columns = np.flatnonzero(mask[first_row:last_row].any(axis=0))
+        return cls(first_row, last_row, int(columns[0]), int(columns[-1]) + 1)
+
     @property
     def shape(self) -> tuple[int, int]:
         """(rows, columns)."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import UNKNOWN, GridSpec
+from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec
 from navette.navigation.mapping.params import MapMemoryParams
 
 
@@ -24,12 +24,11 @@ def known_corners(
     cells: NDArray[np.int8], spec: GridSpec
 ) -> NDArray[np.float64] | None:
     """Return corners (4, 2), m, of the box around the known cells, if any."""
-    known = cells != UNKNOWN
-    rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
-    if rows.size == 0:
+    known = CellWindow.of(cells != UNKNOWN)
+    if known.is_empty:
         return None
-    u = np.array([columns[0], columns[-1] + 1]) * spec.resolution
-    v = np.array([rows[0], rows[-1] + 1]) * spec.resolution
+    u = np.array([known.first_column, known.last_column]) * spec.resolution
+    v = np.array([known.first_row, known.last_row]) * spec.resolution
     return spec.origin.apply(np.array([(x, y) for x in u for y in v]))
 
 

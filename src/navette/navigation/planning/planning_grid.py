@@ -238,13 +238,10 @@ def update_grid(
         The grid as it is now, and whether any cost fell.
     """
     now = (occupancy[window.slices] >= lethal_cost).astype(np.uint8)
-    rows, columns = np.nonzero(now != grid.obstacles[window.slices])
-    if len(rows):
+    moved = CellWindow.of(now != grid.obstacles[window.slices])
+    if not moved.is_empty:
         grid.obstacles[window.slices] = now
-        moved = CellWindow(
-            int(rows.min()), int(rows.max()) + 1, int(columns.min()),
-            int(columns.max()) + 1,
-        ).shifted(window.first_row, window.first_column)  # fmt: skip
+        moved = moved.shifted(window.first_row, window.first_column)
         resolution = grid.spec.resolution
         window = window.union(
             grid.costs.measure(grid.obstacles, grid.distance_m, resolution, moved)
