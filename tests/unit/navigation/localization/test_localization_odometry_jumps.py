@@ -33,7 +33,7 @@ def test_a_jump_is_found_and_undone(by: Pose2) -> None:
     driven(jumps, pose @ by @ STEP, 10, 11)
 
 
-def test_hard_braking_gaps_and_fast_robots_are_no_jumps() -> None:
+def test_hard_braking_gaps_and_fast_robots_do_not_jump() -> None:
     rng = np.random.default_rng(0)
     jumps, pose, speed_mps, now_ns = OdometryJumps(), Pose2(0.0, 0.0, 0.0), 0.0, 0
     for _ in range(500):
