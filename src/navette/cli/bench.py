@@ -2,8 +2,10 @@
 
 import dataclasses
 import json
+import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +32,9 @@ def bench(options: BenchOptions) -> None:
         summary_text,
     )
 
+    for file in (options.results, options.report):
+        if file is not None:
+            _check_writable(file)  # before hours of driving
     runs = _runs(options)
     mine = runs[-1]
     against: list[MeasureDifference] = []
@@ -55,17 +60,27 @@ def bench(options: BenchOptions) -> None:
         raise click.exceptions.Exit(FAILED)
 
 
+def _check_writable(file: Path) -> None:
+    folder = file.absolute().parent
+    if file.is_dir() or not folder.is_dir() or not os.access(folder, os.W_OK):
+        reason = (
+            "is a folder; name a file"
+            if file.is_dir()
+            else f"folder {str(folder)!r} does not exist or cannot be written to"
+        )
+        raise InvalidValueError(f"{str(file)!r}: {reason}")
+
+
 def _runs(options: BenchOptions) -> list["ReportedRun"]:
     """Drive or read what is compared: the baseline first, mine last."""
     from navette.navigation.bench.report import ReportedRun
-    from navette.navigation.bench.runner import read_results, run_trials
+    from navette.navigation.bench.runner import read_results
     from navette.navigation.bench.variants import (
         MINE,
         is_results_file,
         renamed,
         with_variant,
     )
-    from navette.ros2.names.node_classes import node_makers
 
     names = options.compare or []
     if len(names) > 2:
@@ -81,14 +96,7 @@ def _runs(options: BenchOptions) -> list["ReportedRun"]:
             trials += with_variant(base, name)
     if not names:
         trials = base
-    results = run_trials(
-        trials,
-        jobs=options.jobs,
-        results_file=options.results,
-        cluster=options.dask,
-        load_nodes=node_makers,
-    )
-    found = _with_progress(results, trials)
+    found = _driven(options, trials)
     runs = []
     for name in names or [""]:
         if is_results_file(name):
@@ -99,6 +107,48 @@ def _runs(options: BenchOptions) -> list["ReportedRun"]:
             raise InvalidValueError(f"--compare {name!r}: no results in it")
         runs.append(ReportedRun.of(name, own, trials))
     return runs
+
+
+def _driven(options: BenchOptions, trials: Sequence["Trial"]) -> list["TrialResult"]:
+    """Drive the trials, or read what was driven, in their order."""
+    from navette.navigation.bench.runner import run_trials
+    from navette.ros2.names.node_classes import node_makers
+
+    if options.results is not None:
+        _show_finished(options.results, trials)
+    results = run_trials(
+        trials,
+        jobs=options.jobs,
+        results_file=options.results,
+        cluster=options.dask,
+        load_nodes=node_makers,
+    )
+    try:
+        return _with_progress(results, trials)
+    except KeyboardInterrupt:
+        sys.stderr.write(_continuation(options.results))
+        raise
+
+
+def _show_finished(file: Path, trials: Sequence["Trial"]) -> None:
+    """Print how many trials a file of results contains, if there are any."""
+    from navette.navigation.bench.runner import finished_trials, results_of_others
+
+    others = results_of_others(file)
+    if others:
+        sys.stderr.write(
+            f"{file}: results of {', '.join(others)} are not used; this is Navette "
+            f"{version('navette')}. To compare with them: --compare {file}\n"
+        )
+    count = len(finished_trials(file, trials))
+    if count:
+        sys.stderr.write(f"{file}: {count} of {len(trials)} trials are done already\n")
+
+
+def _continuation(results: Path | None) -> str:
+    if results is None:
+        return "interrupted; --results FILE keeps what was driven, to continue\n"
+    return f"interrupted; the same command continues with what is in {results}\n"
 
 
 def _trials(options: TrialOptions) -> list["Trial"]:
@@ -132,10 +182,13 @@ def _numbers(option: str, text: str) -> tuple[int, ...]:
     """Return the numbers of ``1,4,7-9``."""
     numbers: list[int] = []
     for part in filter(None, text.split(",")):
-        first, _, last = part.partition("-")
-        if not first.isdigit() or (last and not last.isdigit()):
+        first, dash, last = part.partition("-")
+        last = last if dash else first
+        if not (first.isdecimal() and last.isdecimal()):
             raise InvalidValueError(f"{option} {text!r}: expected numbers as 1,4,7-9")
-        numbers += range(int(first), int(last or first) + 1)
+        if int(last) < int(first):
+            raise InvalidValueError(f"{option} {text!r}: {part!r} is an empty range")
+        numbers += range(int(first), int(last) + 1)
     return tuple(numbers)
 
 

@@ -16,9 +16,9 @@ class TrialOptions:
     suite: Annotated[
         str,
         Argument(
-            help="BARN's 300 worlds or DynaBARN's moving obstacles (barn, dynabarn,"
-            " with --data), generated worlds (random, barn-like, forest,"
-            " dynabarn-like, …) or the course."
+            help="Worlds to drive: course, the reference world; generated ones:"
+            " barn-like, rooms, office, maze, forest, random (all of these),"
+            " dynabarn-like (moving cylinders); data sets with --data: barn, dynabarn."
         ),
     ]
     data: Annotated[

@@ -65,3 +65,21 @@ def test_files_without_a_common_trial_are_an_error(tmp_path: Path) -> None:
         compared(a, b)
     with pytest.raises(InvalidValueError, match="expected BASELINE, or BASELINE MINE"):
         compared(a, b, a)
+
+
+def refused(*words: str) -> str:
+    ended = CliRunner().invoke(app, ["bench", "maze", *words])
+    assert isinstance(ended.exception, InvalidValueError)
+    return str(ended.exception)
+
+
+@pytest.mark.parametrize("text", ["3-1", "x", "1-", "-2", "1,,x", "٣-x"])
+def test_worlds_are_numbers_and_ranges(text: str) -> None:
+    assert f"--worlds {text!r}" in refused(f"--worlds={text}")
+
+
+def test_places_of_output_are_checked_before_driving(tmp_path: Path) -> None:
+    for option in ("--results", "--report"):
+        missing = str(tmp_path / "missing" / "file")
+        assert "does not exist" in refused(option, missing)
+        assert "is a folder; name a file" in refused(option, str(tmp_path))

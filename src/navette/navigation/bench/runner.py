@@ -6,6 +6,7 @@ import json
 import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,17 +39,21 @@ def run_trials(
         FileFormatError: the file has other content.
         NavetteError: invalid world, robot or parameter of a trial.
     """
-    finished = {} if results_file is None else read_results(results_file)
+    finished = {} if results_file is None else finished_trials(results_file, trials)
     waiting = []
     for trial in trials:
-        key = trial_key(trial)
-        if key in finished:
-            yield dataclasses.replace(finished[key], variant=trial.variant)
-        else:
+        result = finished.get(trial_key(trial))
+        if result is None:
             waiting.append(trial)
+        else:
+            yield dataclasses.replace(result, variant=trial.variant)
     for trial, result in _run(waiting, jobs, cluster, load_nodes):
         if results_file is not None:
-            row = {"key": trial_key(trial), **dataclasses.asdict(result)}
+            row = {
+                "key": trial_key(trial),
+                "navette": version("navette"),
+                **dataclasses.asdict(result),
+            }
             with results_file.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
         yield result
@@ -111,27 +116,60 @@ def _digest(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def read_results(file: Path) -> dict[str, TrialResult]:
-    """Return key → result of a results file; empty without a file.
+def finished_trials(file: Path, trials: Sequence[Trial]) -> dict[str, TrialResult]:
+    """Return key → result of the trials that this version of Navette has driven.
 
     Raises:
         FileFormatError: a line is not a result; names file and line.
     """
+    keys = {trial_key(trial) for trial in trials}
+    own = version("navette")
+    return {key: result for key, by, result in _rows(file) if key in keys and by == own}
+
+
+def results_of_others(file: Path) -> list[str]:
+    """Return the other versions of Navette, in words, that results are of.
+
+    Raises:
+        FileFormatError: a line is not a result; names file and line.
+    """
+    found = {by for _, by, _ in _rows(file)} - {version("navette")}
+    return [f"Navette {by}" if by else "an unnamed version" for by in sorted(found)]
+
+
+def read_results(file: Path) -> dict[str, TrialResult]:
+    """Return key → result of a results file, of any version; empty without a file.
+
+    Raises:
+        FileFormatError: a line is not a result; names file and line.
+    """
+    return {key: result for key, _, result in _rows(file)}
+
+
+def _rows(file: Path) -> Iterator[tuple[str, str, TrialResult]]:
+    """Yield key, version of Navette and result of each line."""
     if not file.exists():
-        return {}
+        return
     _drop_partial_line(file)
-    results = {}
     with file.open(encoding="utf-8") as lines:
         for number, line in enumerate(lines, 1):
+            by = ""
             try:
                 row: dict[str, Any] = json.loads(line)
-                key = str(row.pop("key"))
-                results[key] = TrialResult(**row)
-            except (ValueError, KeyError, TypeError) as error:
-                raise FileFormatError(
-                    file, f"not a result of navette bench ({error})", number
-                ) from error
-    return results
+                key, by = str(row.pop("key")), str(row.pop("navette", ""))
+                yield key, by, TrialResult(**row)
+            except (ValueError, KeyError, TypeError, AttributeError) as error:
+                raise FileFormatError(file, _fault(by, error), number) from error
+
+
+def _fault(by: str, error: Exception) -> str:
+    own = version("navette")
+    if by and by != own:
+        return (
+            f"a result of Navette {by}, which has other measures than this version, "
+            f"{own}; drive the trials again with --results of another file"
+        )
+    return f"not a result of navette bench ({error})"
 
 
 def _drop_partial_line(file: Path) -> None:

@@ -133,8 +133,17 @@ class MeasureDifference:
     @property
     def is_worse(self) -> bool:
         """Whether mine is significantly worse, at p < 0.05."""
+        return self.p_value < _SIGNIFICANT and self._gain < 0
+
+    @property
+    def is_better(self) -> bool:
+        """Whether mine is significantly better, at p < 0.05."""
+        return self.p_value < _SIGNIFICANT and self._gain > 0
+
+    @property
+    def _gain(self) -> float:
         sign = 1.0 if self.measure in _MORE_IS_BETTER else -1.0
-        return self.p_value < _SIGNIFICANT and sign * self.difference < 0
+        return sign * self.difference
 
 
 def compare(

@@ -9,7 +9,8 @@ class FusionGate:
     """Decide which costmaps are fused into the map.
 
     - The first one with known cells: at once.
-    - On the timer: if the robot moved or turned far enough since the last.
+    - On the timer: if the robot moved or turned far enough since the last; by a cell is
+      enough if that one saw through obstacles which may be gone.
     - On arrival: if it contradicts the map near the robot (an object moved or came into
       view), so that a waiting or fast robot does not use an old map until the next
       timer; at most once per ``change_period_s``.
@@ -42,7 +43,7 @@ class FusionGate:
         changes = memory.changes(costmap)
         return max(changes) >= self.params.change_cells
 
-    def on_timer(self, newest: PlacedCostmap) -> bool:
+    def on_timer(self, newest: PlacedCostmap, memory: MapMemory) -> bool:
         """Return whether to fuse the newest costmap on the timer."""
         last = self._last
         if self._is_unsteady(newest) or last is newest:
@@ -51,10 +52,11 @@ class FusionGate:
             return True
         moved = last.map_T_base.distance_to(newest.map_T_base)
         turned = abs(angle_difference(newest.map_T_base.yaw, last.map_T_base.yaw))
-        return (
-            moved >= self.params.update_distance_m
-            or turned >= self.params.update_angle_rad
-        )
+        is_clearing = memory.vanishing >= self.params.change_cells
+        far_m = self.params.update_distance_m
+        if is_clearing:
+            far_m = min(far_m, self.params.resolution_m)
+        return moved >= far_m or turned >= self.params.update_angle_rad
 
     def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
         """Record that ``costmap`` was fused."""

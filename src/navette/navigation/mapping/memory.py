@@ -34,8 +34,9 @@ from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.vanished import (
     VanishedCells,
-    cells_beside,
-    passed_or_without_echo,
+    have_echo,
+    middles,
+    possible_directions,
 )
 
 
@@ -203,6 +204,14 @@ class MapMemory:
         )
 
     @property
+    def vanishing(self) -> int:
+        """Number of lethal cells that beams of the last costmap passed.
+
+        More costmaps, from other poses, determine whether the obstacles are gone.
+        """
+        return self._vanished.pending
+
+    @property
     def cells(self) -> NDArray[np.int8]:
         """The map (H, W) itself: valid until the next change, and not to be changed."""
         return self._cells
@@ -284,24 +293,22 @@ class MapMemory:
         points, which, lethal = marked_points(
             self._masks, self.spec, self._cells, window
         )
-        uv = self.spec.origin.inverse().apply(costmap.hits) / self.spec.resolution
-        hit_cells = np.floor(uv[:, ::-1]).astype(np.int64)
-        inside = (hit_cells >= 0) & (hit_cells < self.spec.shape)
-        beside = cells_beside(hit_cells[inside.all(axis=1)], window)
-        through, silent = passed_or_without_echo(
-            points, costmap.hits, costmap.sensor, self.spec.resolution
+        middle = middles(points, which, len(lethal))
+        measured = have_echo(middle, costmap.hits)
+        self._vanished.forget(lethal[measured])
+        lethal, middle = lethal[~measured], middle[~measured]
+        possible = possible_directions(
+            middle,
+            costmap.hits,
+            costmap.sensor,
+            self.spec.resolution,
+            _is_free(costmap, middle),
         )
-        silent[silent] = _is_free(costmap, points[silent])
-        through |= silent
-        gone = self._vanished.update(lethal[which][through], beside, window)
-        rows, columns = gone.T
-        self._cells[rows, columns] = FREE
-        self._masks[rows, columns] = 0
-        rows, columns = lethal.T
-        still = self._cells[rows, columns] >= LETHAL
-        still &= ~beside[rows - window.first_row, columns - window.first_column]
-        silent_cells: NDArray[np.int64] = lethal[still]
-        return silent_cells
+        gone = self._vanished.update(lethal, possible)
+        self._cells[gone[:, 0], gone[:, 1]] = FREE
+        self._masks[gone[:, 0], gone[:, 1]] = 0
+        kept = self._cells[lethal[:, 0], lethal[:, 1]] >= LETHAL
+        return np.asarray(lethal[kept])
 
     def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
         """Store where beams ended; return the cells (M, 2) with these points."""

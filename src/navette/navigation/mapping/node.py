@@ -207,7 +207,7 @@ class MapMemoryNode(StageNode):
 
     def on_timer(self) -> None:
         """Fuse the newest costmap if the robot moved far enough."""
-        if self._newest is not None and self._gate.on_timer(self._newest):
+        if self._newest is not None and self._gate.on_timer(self._newest, self._memory):
             self._fuse(self._newest)
         elif self._whole_ns < self._map_ns and self._subscribers() > self._served:
             self._publish_whole()  # to subscribers that came since

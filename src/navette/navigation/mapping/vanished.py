@@ -1,159 +1,185 @@
 """Obstacles that beams passed: objects that moved away, also at a distance.
 
 At a distance, neighbouring beams pass a thin post on both sides and mark its cell free
-without having measured it, so a free cell there proves nothing. A beam that passes the
-point where an earlier beam ended proves that the obstacle is gone.
+without having measured it, so a free cell there proves nothing. A cell keeps where
+beams ended in it. These points are those of an obstacle, at least of a post of the
+radius R, whose centre is at most R from their middle. A beam that passes the middle at
+a distance s < R, and ends beyond, leaves only the directions away from it: a centre at
+an angle of at most ``acos((R - s) / R)`` to the beam's normal. Beams that passed on
+several sides, in scans from any place, leave no direction: the obstacle is gone.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from navette.navigation.grids import CellWindow, RowSpans, padded_sparse
+from navette.navigation.grids import RowSpans, padded_sparse, sparse_zeros
 
 Points = NDArray[np.float64]
 Values = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Bits = NDArray[np.uint32]
+"""Directions of a circle, one per bit."""
 
-_ASIDE_M = 0.007
-"""Largest distance between a beam and a point that it passes."""
+_RADIUS_M = 0.02
+"""R: the thinnest post that is kept at any distance."""
+_POINT_ERROR_M = 0.005
+"""Error of the points, besides that of the eighth of a cell that they are stored in."""
+_BEAM_ERROR_M, _BEAM_ERROR_RAD = 0.004, 0.0007
+"""Errors of a beam: the sensor's position while the body pitches, and the direction."""
 _BEYOND_M = 0.1
-"""Least distance beyond the point at which the beam ends, against noise."""
+"""Least distance beyond the points at which a beam ends, against noise."""
+_SAME_M = 0.1
+"""An echo within this distance of the points may be one of the same obstacle."""
 _TIMES = 3
-"""Number of scans without an echo in or beside a cell after which it is free."""
+"""Least number of scans that passed before a cell is free, against faulty scans."""
+
+_ALL = np.uint32(0xFFFFFFFF)
+_ANGLES = np.arange(32) * (math.pi / 16)
+_HALF_SECTOR = math.pi / 32
+_BIT_VALUES = np.uint32(1) << np.arange(32, dtype=np.uint32)
 
 
 class VanishedCells:
-    """Counts, per cell, the scans whose beams passed the points in it.
+    """Where, seen from each cell's points, no obstacle was found to be since its echo.
 
     ``shape`` is that of the map.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self._passes = np.zeros(shape, np.uint8)
+        self._passes = sparse_zeros(shape, np.uint8)
+        self._refuted = sparse_zeros(shape, np.uint32)
+        self.pending = 0
+        """Number of cells that beams of the last scan passed, and that are not free."""
 
     def grow(
         self, pad: tuple[tuple[int, int], tuple[int, int]], written: RowSpans
     ) -> None:
         """Add cells around, as :func:`numpy.pad` does."""
         self._passes = padded_sparse(self._passes, pad, written)
+        self._refuted = padded_sparse(self._refuted, pad, written)
 
-    def update(
-        self, cells: NDArray[np.int64], beside: NDArray[np.bool_], window: CellWindow
-    ) -> NDArray[np.int64]:
+    def forget(self, cells: NDArray[np.int64]) -> None:
+        """Start again for cells (N, 2) with an echo."""
+        rows, columns = cells.T
+        self._passes[rows, columns] = 0
+        self._refuted[rows, columns] = 0
+
+    def update(self, cells: NDArray[np.int64], possible: Bits) -> NDArray[np.int64]:
         """Return the cells (K, 2) whose obstacles are gone.
 
         Args:
-            cells: (N, 2) cells of the window with a point that a beam of this scan
-                passed.
-            beside: cells of the window with an echo in this scan, or beside one.
-            window: the part of the map that the scan may change.
+            cells: (N, 2) lethal cells without an echo, each once.
+            possible: (N,) directions to an obstacle that this scan left, of
+                :func:`possible_directions`.
         """
-        passes = self._passes[window.slices]
-        passes[beside] = 0
-        first = np.array((window.first_row, window.first_column))
-        width = window.shape[1]
-        rows, columns = np.divmod(
-            np.unique((cells - first) @ np.array((width, 1))), max(width, 1)
-        )
-        still = ~beside[rows, columns]
-        rows, columns = rows[still], columns[still]
-        passes[rows, columns] += 1
-        gone = passes[rows, columns] >= _TIMES
-        rows, columns = rows[gone], columns[gone]
-        passes[rows, columns] = 0
-        vanished: NDArray[np.int64] = np.column_stack([rows, columns]) + first
+        passed = possible != _ALL
+        rows, columns = cells[passed].T
+        self._refuted[rows, columns] |= ~possible[passed]
+        passes = np.minimum(self._passes[rows, columns], 254) + 1
+        self._passes[rows, columns] = passes
+        gone = (passes >= _TIMES) & (self._refuted[rows, columns] == _ALL)
+        self.pending = int(np.count_nonzero(~gone))
+        vanished: NDArray[np.int64] = np.column_stack([rows[gone], columns[gone]])
+        self.forget(vanished)
         return vanished
 
 
-def cells_beside(cells: NDArray[np.int64], window: CellWindow) -> NDArray[np.bool_]:
-    """Return the cells (N, 2) and the eight around each, as a mask of a window."""
-    height, width = window.shape
-    mask = np.zeros((height + 4, width + 4), np.bool_)
-    rows = cells[:, 0] - window.first_row + 2
-    columns = cells[:, 1] - window.first_column + 2
-    near = (rows >= 1) & (rows <= height + 2) & (columns >= 1) & (columns <= width + 2)
-    rows, columns = rows[near], columns[near]
-    for i in (-1, 0, 1):
-        for j in (-1, 0, 1):
-            mask[rows + i, columns + j] = True
-    return mask[2:-2, 2:-2]
+def middles(points: Points, which: NDArray[np.int64], count: int) -> Points:
+    """Return the mean (count, 2) of the points (N, 2) with each index of ``which``."""
+    number = np.maximum(np.bincount(which, minlength=count), 1)
+    return np.column_stack(
+        [np.bincount(which, axis, count) / number for axis in points.T]
+    )
+
+
+def have_echo(points: Points, hits: Points) -> Flags:
+    """Return (M,) whether an echo may be of the obstacle at each point."""
+    if len(hits) == 0 or len(points) == 0:
+        return np.zeros(len(points), np.bool_)
+    away, _ = cKDTree(hits).query(points, distance_upper_bound=_SAME_M)
+    return np.asarray(np.isfinite(away))
 
 
 class Beams(NamedTuple):
-    """Echoes of one scan as seen from the sensor, in the order of their angles.
+    """The beams before and after each of M points, by their angle at the sensor.
 
     Attributes:
-        angles, ranges: (N,) rad and m of the echoes.
-        beside: (2, M) index of the echo after and before each point.
-        off: (2, M) rad from these to the point.
+        off: (2, M) rad from the beam to the point.
         away: (M,) m from the sensor to the point.
+        bearing: (M,) rad, of the point.
+        beyond: (2, M) whether the beam ended beyond the point.
+        silent: (2, M) whether the beam had no echo.
     """
 
-    angles: Values
-    ranges: Values
-    beside: NDArray[np.int64]
     off: Values
     away: Values
+    bearing: Values
+    beyond: Flags
+    silent: Flags
 
     @classmethod
     def of(cls, points: Points, hits: Points, sensor: tuple[float, float]) -> "Beams":
-        """Args: points (M, 2) and echoes (N, 2), N > 0, in the map, m; sensor."""
+        """Args: points (M, 2) and at least two echoes (N, 2), in the map, m; sensor.
+
+        Beams without an echo are where a scanner with even steps has them.
+        """
         beams, there = hits - sensor, points - sensor
         angles = np.arctan2(beams[:, 1], beams[:, 0])
         order = np.argsort(angles)
-        angles = angles[order]
-        ranges = np.hypot(beams[order, 0], beams[order, 1])
-        angle = np.arctan2(there[:, 1], there[:, 0])
-        following = np.searchsorted(angles, angle)
-        beside = np.stack([following, following - 1]) % len(angles)
-        off = np.remainder(angle - angles[beside] + np.pi, 2 * np.pi) - np.pi
-        return cls(angles, ranges, beside, off, np.hypot(there[:, 0], there[:, 1]))
+        angles, ranges = angles[order], np.hypot(*beams[order].T)
+        bearing, away = np.arctan2(there[:, 1], there[:, 0]), np.hypot(*there.T)
+        after = np.searchsorted(angles, bearing)
+        beside = np.stack([after, after - 1]) % len(angles)
+        off = np.remainder(bearing - angles[beside] + np.pi, 2 * np.pi) - np.pi
+        steps = np.diff(angles)
+        steps = steps[steps > 1e-5]
+        step = float(np.median(steps)) if len(steps) else math.inf
+        silent = np.abs(off) > 1.5 * step
+        if silent.any():
+            # Steps are multiples of one; the beams beside are the next of that row.
+            rest = np.remainder(off, step)
+            off = np.where(silent, rest - np.array([[step], [0.0]]), off)
+        beyond = silent | (ranges[beside] >= away + _BEYOND_M)
+        return cls(off, away, bearing, beyond, silent)
 
 
-def without_echo(
-    points: Points, hits: Points, sensor: tuple[float, float], spacing_m: float
-) -> NDArray[np.bool_]:
-    """Return (M,) whether only beams without an echo can have gone through each point.
+def possible_directions(
+    points: Points,
+    hits: Points,
+    sensor: tuple[float, float],
+    resolution_m: float,
+    crossed: Flags,
+) -> Bits:
+    """Return (M,) in which directions from each point a post may be after a scan.
 
-    No beam beside the point has an echo, and beams there are at most ``spacing_m``
-    apart, so that something as wide would have ended one.
+    Args:
+        points: (M, 2) middle of the points of a cell, in the map, m.
+        hits: (N, 2) echoes, in the map, m.
+        sensor: x, y in the map, m.
+        resolution_m: edge of a cell of the map.
+        crossed: (M,) whether beams crossed the point's cell; one without an echo proves
+            nothing elsewhere.
     """
+    possible = np.full(len(points), _ALL, np.uint32)
     if len(hits) < 2 or len(points) == 0:
-        return np.zeros(len(points), np.bool_)
-    return _without_echo(Beams.of(points, hits, sensor), spacing_m)
-
-
-def passed(
-    points: Points, hits: Points, sensor: tuple[float, float]
-) -> NDArray[np.bool_]:
-    """Return (M,) whether a beam went through each point and ended well beyond it."""
-    if len(hits) == 0 or len(points) == 0:
-        return np.zeros(len(points), np.bool_)
-    return _passed(Beams.of(points, hits, sensor))
-
-
-def passed_or_without_echo(
-    points: Points, hits: Points, sensor: tuple[float, float], spacing_m: float
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return :func:`passed` and :func:`without_echo` of the same points."""
-    if len(hits) < 2 or len(points) == 0:
-        none = np.zeros(len(points), np.bool_)
-        return passed(points, hits, sensor), none
+        return possible
     beams = Beams.of(points, hits, sensor)
-    return _passed(beams), _without_echo(beams, spacing_m)
-
-
-def _without_echo(beams: Beams, spacing_m: float) -> NDArray[np.bool_]:
-    steps = np.diff(beams.angles)
-    steps = steps[steps > 1e-5]
-    step = float(np.median(steps)) if len(steps) else np.inf
-    nearest = np.abs(beams.off).min(axis=0)
-    return np.asarray((nearest > 1.5 * step) & (beams.away * step <= spacing_m))
-
-
-def _passed(beams: Beams) -> NDArray[np.bool_]:
-    aside = beams.away * np.abs(np.sin(beams.off)) <= _ASIDE_M
-    aside &= np.abs(beams.off) < np.pi / 2
-    aside &= beams.ranges[beams.beside] >= beams.away + _BEYOND_M
-    return np.asarray(aside.any(axis=0))
+    aside = beams.away * np.abs(np.sin(beams.off))
+    aside += _BEAM_ERROR_M + _BEAM_ERROR_RAD * beams.away
+    reach = _RADIUS_M + _POINT_ERROR_M + resolution_m / 8 * math.sqrt(0.5)
+    passed = beams.beyond & (np.abs(beams.off) < np.pi / 2)
+    passed &= (aside < _RADIUS_M) & (crossed | ~beams.silent)
+    for side in (0, 1):
+        index = np.flatnonzero(passed[side])
+        off, s = beams.off[side, index], aside[side, index]
+        # The centre is away from the beam: on the side on which the point is.
+        normal = beams.bearing[index] - off + np.copysign(math.pi / 2, off)
+        half = np.arccos((_RADIUS_M - s) / reach) + _HALF_SECTOR
+        gap = np.remainder(_ANGLES - normal[:, None] + np.pi, 2 * np.pi) - np.pi
+        left = np.abs(gap) <= half[:, None]
+        possible[index] &= (left * _BIT_VALUES).sum(axis=1, dtype=np.uint32)
+    return possible

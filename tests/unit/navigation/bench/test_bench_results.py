@@ -14,7 +14,13 @@ from navette.navigation.bench.losses import detour_loss, lost_seconds
 from navette.navigation.bench.replay_command import replay_command
 from navette.navigation.bench.report import ReportedRun, report_page
 from navette.navigation.bench.run import run_trial
-from navette.navigation.bench.runner import read_results, run_trials, trial_key
+from navette.navigation.bench.runner import (
+    finished_trials,
+    read_results,
+    results_of_others,
+    run_trials,
+    trial_key,
+)
 from navette.navigation.bench.statistics import compare, summarize, wilson_interval
 from navette.navigation.bench.trial import Trial, TrialResult
 from navette.navigation.bench.variants import with_variant
@@ -122,6 +128,21 @@ def test_finished_trials_are_read_and_damage_is_named(tmp_path: Path) -> None:
     assert len(read_results(file)) == 2
     file.write_text(file.read_text(encoding="utf-8") + "{}\n", encoding="utf-8")
     with pytest.raises(FileFormatError, match=r"results\.jsonl:3"):
+        read_results(file)
+
+
+def test_results_of_another_version_are_compared_and_not_continued(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "results.jsonl"
+    row = {"key": trial_key(TRIAL), **dataclasses.asdict(result("rooms-3"))}
+    file.write_text(json.dumps(row | {"navette": "0.0.1"}) + "\n", encoding="utf-8")
+    assert finished_trials(file, [TRIAL]) == {}
+    assert results_of_others(file) == ["Navette 0.0.1"]
+    assert [each.name for each in read_results(file).values()] == ["rooms-3"]
+    unknown = row | {"navette": "9.0", "elegance": 1.0}
+    file.write_text(json.dumps(unknown) + "\n", encoding="utf-8")
+    with pytest.raises(FileFormatError, match=r"result of Navette 9\.0, which has"):
         read_results(file)
 
 

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,7 @@ def fused_once(first: PlacedCostmap, **values) -> tuple[FusionGate, MapMemory]:
 def test_the_first_costmap_is_fused_at_once() -> None:
     gate, memory = gate_and_memory()
     assert gate.on_arrival(costmap(), memory, 0)
-    assert gate.on_timer(costmap())
+    assert gate.on_timer(costmap(), memory)
 
 
 @pytest.mark.parametrize(
@@ -49,15 +51,30 @@ def test_the_first_costmap_is_fused_at_once() -> None:
 )
 def test_the_timer_waits_for_distance_or_turn(x, yaw, expected) -> None:
     """Gating by distance alone would never fuse during a turn."""
-    gate, _ = fused_once(costmap())
-    assert gate.on_timer(costmap(x, yaw)) is expected
+    gate, memory = fused_once(costmap())
+    assert gate.on_timer(costmap(x, yaw), memory) is expected
+
+
+def test_the_timer_waits_for_a_cell_while_obstacles_vanish() -> None:
+    gate, memory = fused_once(costmap())
+    seen = dataclasses.replace(
+        costmap(obstacle=True),
+        hits=np.array([(1.5, y) for y in np.arange(-0.5, 0.5, 0.02)]),
+    )
+    behind = np.array([(2.0, y) for y in np.arange(-0.8, 0.8, 0.01)])
+    for each in (seen, dataclasses.replace(costmap(), hits=behind)):
+        memory.fuse(each)
+        gate.fused(each, 0)
+    assert memory.vanishing >= memory.params.change_cells
+    assert not gate.on_timer(costmap(0.05), memory)
+    assert gate.on_timer(costmap(0.15), memory)
 
 
 def test_the_same_costmap_is_not_fused_twice() -> None:
     first = costmap()
-    gate, _ = fused_once(first, update_distance_m=0.0)
-    assert not gate.on_timer(first)
-    assert gate.on_timer(costmap())
+    gate, memory = fused_once(first, update_distance_m=0.0)
+    assert not gate.on_timer(first, memory)
+    assert gate.on_timer(costmap(), memory)
 
 
 def test_nothing_is_fused_while_spinning() -> None:
@@ -65,7 +82,7 @@ def test_nothing_is_fused_while_spinning() -> None:
     assert not gate.on_arrival(costmap(yaw_rate=-2.0), memory, 0)
     gate, memory = fused_once(costmap())
     spinning = costmap(3.0, 1.0, yaw_rate=2.0, obstacle=True)
-    assert not gate.on_timer(spinning)
+    assert not gate.on_timer(spinning, memory)
     assert not gate.on_arrival(spinning, memory, SECOND)
 
 
@@ -75,7 +92,7 @@ def test_nothing_is_fused_while_spinning() -> None:
 def test_nothing_is_fused_while_falling_or_tilted(motion) -> None:
     gate, memory = gate_and_memory()
     assert not gate.on_arrival(costmap(**motion), memory, 0)
-    assert not gate.on_timer(costmap(**motion))
+    assert not gate.on_timer(costmap(**motion), memory)
     assert gate.on_arrival(costmap(vertical_speed=-0.1, tilt=0.05), memory, 0)
 
 

@@ -8,7 +8,7 @@ from navette.navigation.costmap import CostmapParams, PlanarScan, ScanCostmap
 from navette.navigation.grids import placed
 from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
 from navette.navigation.mapping.params import MapMemoryParams
-from navette.navigation.mapping.vanished import passed
+from navette.navigation.mapping.vanished import have_echo, possible_directions
 
 BEAMS = np.linspace(-np.pi, np.pi, 720, endpoint=False)
 COSTMAP = ScanCostmap(CostmapParams(resolution_m=0.05, size_m=22.0))
@@ -76,7 +76,38 @@ def test_thin_posts_stay_at_every_range() -> None:
     assert len(seen) >= len(posts) - 1
 
 
-def test_only_a_beam_through_the_point_that_ends_beyond_it_counts() -> None:
-    points = np.array([(2.0, 0.0), (2.0, 0.02), (2.0, -1.0), (-2.0, 0.0)])
-    hits = np.array([(4.0, 0.0), (2.05, -1.025)])
-    assert passed(points, hits, (0.0, 0.0)).tolist() == [True, False, False, False]
+def directions(points: list[tuple[float, float]], hits: np.ndarray) -> list[int]:
+    """Return in how many of 32 directions from each point a post may be."""
+    crossed = np.ones(len(points), np.bool_)
+    found = possible_directions(np.array(points), hits, (0.0, 0.0), 0.05, crossed)
+    return [int(bits).bit_count() for bits in found]
+
+
+def fan(*angles: float, range_m: float = 5.0) -> np.ndarray:
+    return range_m * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def test_a_beam_beside_a_point_leaves_the_directions_away_from_it() -> None:
+    one_side = fan(-0.5, 0.002, 0.5)  # 4 mm to the left of (2, 0)
+    [left] = directions([(2.0, 0.0)], one_side)
+    assert 8 <= left <= 18
+    assert directions([(2.0, 0.0)], fan(-0.5, -0.002, 0.002, 0.5)) == [0]
+    assert directions([(2.0, 0.0)], fan(-0.5, -0.015, 0.015, 0.5)) == [32]
+
+
+def test_a_beam_that_ends_at_the_point_or_before_proves_nothing() -> None:
+    near = fan(-0.003, 0.003, range_m=2.05)
+    assert directions([(2.0, 0.0)], near) == [32]
+    assert directions([(2.0, 0.0)], fan(-0.003, 0.003, range_m=1.0)) == [32]
+
+
+def test_beams_without_an_echo_are_between_the_others() -> None:
+    steps = [k * 0.004 + 0.002 for k in range(-200, 200) if abs(k) > 9]
+    assert directions([(2.0, 0.0)], fan(*steps)) == [0]
+    coarse = [k * 0.04 + 0.02 for k in range(-20, 20) if abs(k) > 4]
+    assert directions([(2.0, 0.0)], fan(*coarse)) == [32]
+
+
+def test_an_echo_beside_another_post_does_not_free_its_cell() -> None:
+    near = have_echo(np.array([(2.0, 0.0), (2.0, 0.2)]), np.array([(2.0, 0.28)]))
+    assert near.tolist() == [False, True]
