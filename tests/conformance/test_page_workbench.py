@@ -167,6 +167,34 @@ def test_a_thumb_takes_over_and_stops(person: Person) -> None:
 
 
 @pytest.mark.slow
+@part("hang")
+def test_a_page_that_hangs_receives_the_goal_that_was_sent_meanwhile(
+    person: Person,
+) -> None:
+    person.seen()
+
+
+@pytest.mark.slow
+@part("keys")
+def test_space_stops_wherever_the_focus_is(person: Person) -> None:
+    seen = person.seen()
+    assert [seen[what] for what in ("panel", "tab", "slider")] == [True] * 3
+    assert seen["tool"] == "m"
+
+
+@pytest.mark.slow
+@part("files")
+def test_files_are_saved_and_loaded_and_refusals_have_a_reason(person: Person) -> None:
+    seen = person.seen()
+    header, first = seen["csv"]
+    assert header == 'time_s,"/odom/filtered.twist.twist.linear.x"'
+    assert len(first.split(",")) == 2
+    assert bytes(seen["png"]) == b"\x89PNG"
+    assert seen["parameter"] == "2", "the value in effect"
+    assert "refused" in seen["goal"].lower()
+
+
+@pytest.mark.slow
 @part("restart", *BROWSERS)
 def test_the_page_returns_with_the_server(person: Person, demo: Demo) -> None:
     assert person.read() == "end\n"

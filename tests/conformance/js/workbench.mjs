@@ -1,7 +1,8 @@
 // A person at the page of `navette demo`, in parts: goals (also with a heading), panels and
-// run control, sizes and themes, a thumb on the stick, a server that ends and returns.
+// run control, sizes and themes, a thumb on the stick, a page that hangs, keys in panels,
+// files that are saved and loaded, a server that ends and returns.
 //
-//   node workbench.mjs goals|panels|sizes|touch|restart http://127.0.0.1:PORT BROWSER FOLDER
+//   node workbench.mjs goals|panels|sizes|touch|hang|keys|files|restart http://127.0.0.1:PORT BROWSER FOLDER
 //
 // Prints what the page displays, and what axe finds; the part `restart` prints "end" and
 // waits for the line "back" on its input.
@@ -195,7 +196,101 @@ async function touch() {
   await phone.locator("#stop").tap();
   await commander("Emergency stop");
   await phone.locator("#release").tap();
+
+  // The page is lost with the thumb on the stick: the robot stops.
+  const other = await newPage({ viewport: { width: 800, height: 600 } });
+  await other.evaluate(() => {
+    navette.connection.publish("/cancel_goal", "std_msgs/msg/Empty", {});
+    window.speed = null;
+    navette.connection.subscribe("/odom/filtered", {}, ({ value }) => { window.speed = Math.abs(value.twist.twist.linear.x); });
+  });
+  await at("touchStart", 0);
+  await at("touchMove", -stick.height / 2);
+  await other.waitForFunction(() => speed > 0.2, null, { timeout: 60_000 });
+  await phone.close({ runBeforeUnload: false });
+  await other.waitForFunction(() => speed < 0.01, null, { timeout: 60_000 });
   await phone.context().close();
+}
+
+async function hang() {
+  // A page that hangs displays afterwards what was sent once meanwhile.
+  const page = await desktop();
+  const other = await newPage({ viewport: { width: 800, height: 600 } });
+  await page.evaluate(() => {
+    navette.open("image", { topic: "/camera" });
+    window.goals = [];
+    navette.connection.subscribe("/goal_point", { every: true }, ({ value }) => goals.push(value.point.x));
+  });
+  await page.waitForTimeout(1500);
+  const hanging = page.evaluate(() => { for (const end = performance.now() + 3500; performance.now() < end;); });
+  await other.waitForTimeout(2000);
+  await other.evaluate(() => navette.operator.sendGoal({ frame: "map", x: -6.25, y: -6.5, yaw: null }));
+  await hanging;
+  await until(page, () => goals.includes(-6.25));
+  await until(page, () => Math.abs((navette.robot.goal?.x ?? 0) + 6.25) < 0.1);
+}
+
+async function keys() {
+  // Opening a panel, its tab and its sliders leave Space to Stop, and letters to shortcuts.
+  const page = await desktop();
+  const stops = async (what) => {
+    await page.keyboard.press(" ");
+    await until(page, () => navette.robot.isStopped);
+    seen[what] = await page.evaluate(() => navette.robot.isStopped);
+    await page.locator("#release").click();
+    await until(page, () => !navette.robot.isStopped);
+  };
+  await page.evaluate(() => navette.open("displays"));
+  await stops("panel");
+  await page.getByRole("tab", { name: "Topics" }).first().click();
+  await stops("tab");
+  await page.evaluate(() => navette.open("parameters"));
+  await page.locator('input[type="range"]').first().focus();
+  await stops("slider");
+  await page.evaluate(() => navette.open("displays"));
+  await page.getByRole("checkbox", { name: "Grid" }).focus();
+  await page.keyboard.press("m");
+  seen.tool = await page.evaluate(() => navette.tools.chosen.key);
+  await page.keyboard.press("?");
+  await page.locator("dialog[open]").waitFor();
+  seen.axe.help = await serious(page);
+}
+
+async function files() {
+  // Plots and layouts are saved; a layout is loaded; what is refused says why where it was set.
+  const page = await desktop();
+  await page.evaluate(() => navette.open("plot", { paths: ["/odom/filtered.twist.twist.linear.x"] }));
+  await until(page, () => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
+  await page.waitForTimeout(500);
+  const saved = async (name) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name, exact: true }).last().click()]);
+    const path = `${folder}/${download.suggestedFilename()}`;
+    await download.saveAs(path);
+    return path;
+  };
+  seen.csv = readFileSync(await saved("Save as CSV"), "utf8").split("\n").slice(0, 2);
+  seen.png = [...readFileSync(await saved("Save as PNG")).subarray(0, 4)];
+  const menu = () => page.getByRole("button", { name: "Layout" }).first().click();
+  await menu();
+  const layout = await saved("Save to a file");
+  await menu();
+  await page.getByRole("button", { name: "Recordings" }).click();
+  await until(page, () => document.querySelector(".plot-value") === null);
+  await menu();
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Load from a file" }).click()]);
+  await chooser.setFiles(layout);
+  await page.locator(".plot-name", { hasText: "/odom/filtered" }).first().waitFor();
+
+  await page.evaluate(() => navette.open("parameters"));
+  await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
+  const field = page.locator('input[aria-label="/control.acceleration_mps2"]');
+  await field.fill("-5");
+  await field.press("Enter");
+  await page.getByText("must be >= 0.01").first().waitFor();
+  seen.parameter = await field.inputValue();
+  await page.evaluate(() => navette.operator.sendGoal({ frame: "nowhere", x: 1, y: 1, yaw: null }));
+  await until(page, () => /refused/i.test(document.querySelector("#answer").textContent));
+  seen.goal = await page.textContent("#answer");
 }
 
 async function restart() {
@@ -213,7 +308,7 @@ async function restart() {
 }
 
 try {
-  await { goals, panels, sizes, touch, restart }[part]();
+  await { goals, panels, sizes, touch, hang, keys, files, restart }[part]();
   console.log(JSON.stringify(seen));
 } finally {
   await browser.close();

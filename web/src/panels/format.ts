@@ -4,7 +4,10 @@
 export function numberText(value: number, digits = 6): string {
   if (Number.isNaN(value)) return "NaN";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
-  return String(Number(value.toPrecision(digits))).replace("-", "−");
+  // An exponent is shorter than zeros.
+  const isTiny = value !== 0 && Math.abs(value) < 1e-4;
+  const text = isTiny ? Number(value.toPrecision(digits)).toExponential() : String(Number(value.toPrecision(digits)));
+  return text.replaceAll("-", "−");
 }
 
 export function rateText(hz: number | null): string {

@@ -172,7 +172,7 @@ export class PlotPanel implements PanelInstance {
       legend: { show: false },
       cursor: { drag: { x: true, y: false, setScale: true }, points: { size: 6 } },
       scales: { x: { time: false }, y: { range: (_plot, low, high) => paddedRange(low, high) } },
-      axes: [{ ...axis, size: 26, values: axisText }, { ...axis, size: 52, values: axisText }],
+      axes: [{ ...axis, size: 26, values: axisText }, { ...axis, size: (_plot: uPlot, texts: string[] | null) => Math.max(44, 16 + 6.2 * Math.max(0, ...(texts ?? []).map((text) => text.length))), values: axisText }],
       series: [{}, ...this.#curves.map((curve, index) => ({ label: curve.text, stroke: this.#colour(index), width: 1.5, points: { show: false }, spanGaps: true, show: curve.isShown }))],
       hooks: {
         setSelect: [(plot) => { if (plot.select.width > 0) this.#setZoomed(true); }],

@@ -13,14 +13,15 @@ const KEYS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowRight: [0, -1],
 };
 
-/** Whether the element takes text, so that keys are its own. */
+/** Whether letters and arrows are the element's own. */
 export function takesKeys(element: EventTarget | null): boolean {
-  return element instanceof Element && element.closest("input, select, textarea, [contenteditable], [role=slider], [role=tab], [role=menu]") !== null;
+  return element instanceof Element && element.closest("input:not([type=checkbox]), select, textarea, [contenteditable], [role=slider], [role=tab], [role=menu]") !== null;
 }
 
-/** Whether the element uses Space; a tab and a slider have other keys, and Stop comes first. */
+/** Whether Space is the element's own; a tab and a slider have other keys, and Stop comes first. */
 function takesSpace(element: EventTarget | null): boolean {
-  return takesKeys(element) && !(element as Element).matches("[role=tab], input[type=range]");
+  if (!(element instanceof Element)) return false;
+  return element.matches("input[type=checkbox]") || (takesKeys(element) && !element.matches("[role=tab], input[type=range]"));
 }
 
 /** Drives while keys are held. The keydown handler publishes before anything else runs. */

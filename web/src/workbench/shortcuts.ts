@@ -34,7 +34,7 @@ export class Shortcuts {
       "dialog",
       { class: "help-dialog", "aria-labelledby": "help-title" },
       h("div", { class: "row" }, h("h2", { id: "help-title", class: "grow" }, "Keyboard and mouse"), close),
-      h("dl", {}, ...OTHERS.flatMap(([keys, text]) => row(keys, text)), ...this.#all.flatMap(({ key, text }) => row(key.length === 1 ? key.toUpperCase() : key, text))),
+      h("dl", {}, ...OTHERS.flatMap(([keys, text]) => row(keys, text)), ...this.#all.flatMap(({ key, text }) => row(key === "escape" ? "Esc" : key.toUpperCase(), text))),
     );
     addEventListener("keydown", (event) => this.#onKey(event));
   }

@@ -31,6 +31,7 @@ describe("field paths", () => {
 describe("text", () => {
   it("prints numbers, sizes and times", () => {
     expect([numberText(-0.123456789), numberText(NaN), numberText(1e21)]).toEqual(["−0.123457", "NaN", "1e+21"]);
+    expect([numberText(-0.0000418321234, 3), numberText(0.00012)]).toEqual(["−4.18e−5", "0.00012"]);
     expect([bytesText(999), bytesText(12_345), bytesText(150_000_000)]).toEqual(["999 B", "12.3 kB", "150 MB"]);
     expect([clockText(65.25), clockText(5, 4000)]).toEqual(["1:05.2", "0:00:05.0"]);
     expect(stampText(1_500_000_000n)).toBe("1.500");
