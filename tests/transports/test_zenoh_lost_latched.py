@@ -88,9 +88,12 @@ def test_the_last_map_reaches_a_reader_that_was_stopped(writer: Node) -> None:
     ) as reader:
         widths: Queue[int] = Queue()
         lines = reader.stdout or ()
-        receive = threading.Thread(
-            target=lambda: [widths.put(int(line)) for line in lines], daemon=True
-        )
+
+        def read() -> None:
+            for line in lines:
+                widths.put(int(line))
+
+        receive = threading.Thread(target=read, daemon=True)
         receive.start()
         try:
             until(lambda: publisher.get_subscription_count() == 1, "the reader")
