@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A planar laser scanner by ray casting."""
 
+import math
 from dataclasses import dataclass
 
 import mujoco
@@ -78,6 +79,7 @@ class Lidar(BeamSensor):
         self.angle_increment = (
             float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
         )
+        self._beams = np.array([(math.cos(a), math.sin(a)) for a in self._angles])
         self._distance, self._no_noise = np.empty(n), np.zeros(n)
 
     def warm_up(self) -> None:
@@ -85,7 +87,7 @@ class Lidar(BeamSensor):
         empty = np.zeros((0, 3))
         cast_fan(
             np.zeros(0, dtype=np.int64), empty, empty, np.zeros((0, 3, 3)),
-            np.zeros(3), np.eye(3), self._angles, 1.0, self._distance,
+            np.zeros(3), np.eye(3), self._angles, self._beams, 1.0, self._distance,
         )  # fmt: skip
         readings(
             self._distance, self._no_noise, self.sensor.range_min,
@@ -133,6 +135,6 @@ class Lidar(BeamSensor):
             return self._distance
         cast_fan(
             shapes.kind, shapes.size, shapes.position, shapes.rotation, origin,
-            world_R_sensor, self._angles, reach, self._distance,
+            world_R_sensor, self._angles, self._beams, reach, self._distance,
         )  # fmt: skip
         return self._distance

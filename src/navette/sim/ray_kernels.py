@@ -147,12 +147,13 @@ def _eye(view_R_shape, centre):  # type: ignore[no-untyped-def]
 
 @kernel
 def cast_fan(  # type: ignore[no-untyped-def]
-    kind, size, position, rotation, origin, world_R_fan, angles, reach, distance
+    kind, size, position, rotation, origin, world_R_fan, angles, beams, reach, distance
 ):
     """Distances of beams in the fan frame's xy plane, at ascending ``angles``.
 
     Args:
         angles: (N,) rad, evenly spaced, at most one turn.
+        beams: (N, 2) their cosines and sines.
         reach: m; farther shapes are ignored.
         distance: (N,) m, written; inf where nothing is hit.
     """
@@ -169,16 +170,16 @@ def cast_fan(  # type: ignore[no-untyped-def]
         if half < 0.0:
             continue
         if half >= math.pi:
-            _cast_beams(kind[g], size[g], m, c, angles, begin, n - 1, distance)
+            _cast_beams(kind[g], size[g], m, c, beams, begin, n - 1, distance)
             continue
         # As beam indices, within one turn from the first beam.
         low, width = (middle - half - angles[0]) / step, 2.0 * half / step
         low -= math.floor(low / turn) * turn
         last = min(n - 1, math.floor(low + width))
-        _cast_beams(kind[g], size[g], m, c, angles, math.ceil(low), last, distance)
+        _cast_beams(kind[g], size[g], m, c, beams, math.ceil(low), last, distance)
         if low + width >= turn:  # wraps around to the first beams
             last = min(n - 1, math.floor(low + width - turn))
-            _cast_beams(kind[g], size[g], m, c, angles, begin, last, distance)
+            _cast_beams(kind[g], size[g], m, c, beams, begin, last, distance)
 
 
 @kernel
@@ -213,11 +214,11 @@ def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
 
 @kernel(inline="never")
 def _cast_beams(  # type: ignore[no-untyped-def]
-    kind, size, m, c, angles, first, last, distance
+    kind, size, m, c, beams, first, last, distance
 ):
     ox, oy, oz = _eye(m, c)
     for i in range(first, last + 1):
-        x, y = math.cos(angles[i]), math.sin(angles[i])
+        x, y = beams[i, 0], beams[i, 1]
         dx = m[0, 0] * x + m[1, 0] * y
         dy = m[0, 1] * x + m[1, 1] * y
         dz = m[0, 2] * x + m[1, 2] * y

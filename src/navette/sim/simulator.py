@@ -246,12 +246,14 @@ class Simulator:
 
     def _step_checking_contacts(self, count: int) -> None:
         """Step singly, so that no short contact is missed."""
+        model, data, has_actors = self.compiled.model, self._data, bool(self.actors)
         for _ in range(count):
-            self.actors.place(self._data, self.now_ns)
-            mujoco.mj_step(self.compiled.model, self._data, 1)
+            if has_actors:
+                self.actors.place(data, self.now_ns)
+            mujoco.mj_step(model, data)
             self._steps += 1
-            if self._data.ncon:
-                self.contacts.observe(self._data, self.now_ns)
+            if data.ncon:
+                self.contacts.observe(data, self.now_ns)
 
     def _drive(self) -> None:
         speed = self._ramp.advance(self.now_ns)
