@@ -40,6 +40,9 @@ HEURISTIC_WEIGHT = 1.5
 GOOD_ENOUGH_M = 0.1
 # Additional cost factor of a pose at the margin, relative to a comfortable one.
 DISCOMFORT = 2.0
+# Additional cost factor of a pose that touches an obstacle, relative to one at the
+# margin: from a start within the margin, the path leads away from the obstacle first.
+TOUCHING = 10.0
 
 # Columns of Tree.links.
 HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
@@ -193,7 +196,9 @@ def _branch(
         clearance = _clearance(scene, x_new, y_new, yaw + dyaw, scene.comfort_m)
         lack = (scene.comfort_m - clearance) / (scene.comfort_m - scene.margin_m)
         if lack > 0.0:
-            g += np.int64(moves.costs[m] * DISCOMFORT * lack)
+            within = 1.0 - clearance / scene.margin_m if escaping else 0.0
+            factor = DISCOMFORT * lack + TOUCHING * max(0.0, within)
+            g += np.int64(moves.costs[m] * factor)
         if ROOM - g <= tree.kept[at]:
             continue
         tree.kept[at] = ROOM - g

@@ -15,7 +15,7 @@ from planning_worlds import (
 )
 
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import GridSpec, exact_clearances, make_outline
 from navette.navigation.planning import (
     Goal,
     Outcome,
@@ -295,3 +295,25 @@ def test_a_robot_at_its_goal_that_cannot_turn_there_drives() -> None:
     )
     plan = planner(occupancy, spec, long).plan(Pose2(3, 3, 0.0), Goal(3.0, 3.0, 1.57))
     assert not plan.outcome.has_path or np.ptp(plan.poses[:, 0]) > 0.3
+
+
+def test_beside_the_end_of_a_wall_the_path_leaves_it_before_it_turns() -> None:
+    husky = (
+        *(0.495, 0.2, 0.421, 0.335, -0.421, 0.335, -0.495, 0.2),
+        *(-0.495, -0.2, -0.421, -0.335, 0.421, -0.335, 0.495, -0.2),
+    )
+    wall = np.array(
+        [(x, -5.2) for x in np.arange(-1.775, -1.67, 0.0125)]
+        + [(x, y) for x in (-1.775, -1.675) for y in np.arange(-5.2, -4.0, 0.0125)]
+    )
+    spec = GridSpec(0.1, 60, 60, Pose2(-4.0, -8.0, 0.0))
+    occupancy = np.zeros(spec.shape, np.int8)
+    rows_columns = {spec.cell_of(x, y) for x, y in wall.tolist()}
+    occupancy[tuple(np.array(sorted(rows_columns)).T)] = 100
+    made = Planner(PlannerParams(footprint_m=husky))
+    made.set_map(occupancy, spec, wall)
+    plan = made.plan(Pose2(-1.293, -5.312, -2.287), Goal(-3.2, -5.2))
+    outline = make_outline(made.map.footprint)
+    clearance = exact_clearances(made.grid().exact_obstacles, outline, plan.poses, 0.5)
+    assert plan.outcome.has_path
+    assert clearance[1:].min() > clearance[0] + 0.003
