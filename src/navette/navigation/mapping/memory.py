@@ -39,6 +39,9 @@ from navette.navigation.mapping.vanished import (
     possible_directions,
 )
 
+# Beyond the body, obstacles that the sensors do not see can be touched in a turn.
+_BESIDE_M = 0.3
+
 
 class BodyMotion(NamedTuple):
     """Motion of the robot at the stamp of a costmap."""
@@ -135,6 +138,38 @@ class MapMemory:
         if self._log_odds is not None:
             self._log_odds[cleared] = self._evidence_of(self._cells[cleared])
         self._note_change(CellWindow.whole(self.spec.shape))
+
+    def points_in_blind_spot(self, costmap: PlacedCostmap) -> NDArray[np.float64]:
+        """Return where beams ended (N, 2), m, beside the body, in cells not seen now.
+
+        The sensors do not show again what stands there until the robot has moved.
+        """
+        points = self.hit_points()
+        if self.footprint is None or not len(points):
+            return points[:0]
+        base = costmap.map_T_base
+        away = np.hypot(points[:, 0] - base.x, points[:, 1] - base.y)
+        points = points[away <= self.footprint.circumscribed_radius + _BESIDE_M]
+        uv = costmap.spec.origin.inverse().apply(points) / costmap.spec.resolution
+        cells = np.floor(uv[:, ::-1]).astype(np.int64)
+        inside = ((cells >= 0) & (cells < costmap.spec.shape)).all(axis=1)
+        seen = np.zeros(len(points), np.bool_)
+        seen[inside] = costmap.cells[tuple(cells[inside].T)] != UNKNOWN
+        return points[~seen]
+
+    def restore(self, points: NDArray[np.float64]) -> None:
+        """Mark points (N, 2), map, m, within the map as obstacles again."""
+        if not len(points):
+            return
+        window = CellWindow.around(self.spec, points, 1)
+        self._written.add(window)
+        cells = mark_points(self._masks, self.spec, points)
+        rows, columns = cells.T
+        self._cells[rows, columns] = LETHAL
+        if self._log_odds is not None:
+            evidence = self._evidence_of(self._cells[rows, columns])
+            self._log_odds[rows, columns] = evidence
+        self._note_change(window)
 
     def fuse(self, costmap: PlacedCostmap) -> bool:
         """Fuse a costmap; return False, without effect, if it has no known cell."""

@@ -404,10 +404,20 @@ class MapMemoryNode(StageNode):
         self._load(known.cells, GridSpec(known.resolution, width, height, known.origin))
 
     def _clear(self, region: SquareRegion | None) -> None:
-        """Clear a region of the map; what is seen now is fused again at once."""
-        self._memory.clear(region)
-        if self._newest is not None and self._memory.fuse(self._newest):
-            self._gate.fused(self._newest, self._now_ns())
+        """Clear a region of the map; what is seen now is fused again at once.
+
+        What stands beside the body where no sensor looks stays: a robot that turns
+        there would touch it.
+        """
+        newest = self._newest
+        if newest is None:
+            self._memory.clear(region)
+        else:
+            beside = self._memory.points_in_blind_spot(newest)
+            self._memory.clear(region)
+            if self._memory.fuse(newest):
+                self._gate.fused(newest, self._now_ns())
+            self._memory.restore(beside)
         self._publish_map(self._now_ns())
 
     def _drop(self, reason: str, detail: str) -> None:

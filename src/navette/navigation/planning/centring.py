@@ -35,7 +35,7 @@ def centred(points: Points, grid: PlanningGrid, body: BodyShape) -> Points:
             break
         line[tight] = _pushed(poses[tight], here[tight], grid, body, enough)
         # The neighbours too, or the line gets kinks.
-        near = np.convolve(tight, np.ones(5), "same") > 0
+        near = np.convolve(tight, np.ones(5))[2 : len(tight) + 2] > 0
         near[[0, -1]] = False
         middles = 0.5 * line[1:-1] + 0.25 * (line[:-2] + line[2:])
         line[1:-1][near[1:-1]] = middles[near[1:-1]]

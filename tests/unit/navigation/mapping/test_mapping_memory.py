@@ -210,3 +210,33 @@ def test_bad_parameters_are_named(values, text) -> None:
 def test_bad_footprint_is_named() -> None:
     with pytest.raises(ParameterError, match="'footprint_m': footprint: 3 numbers"):
         memory(footprint_m=(0.0, 1.0, 2.0))
+
+
+@pytest.mark.parametrize("fusion", ["overwrite", "log_odds"])
+def test_clearing_keeps_what_stands_beside_the_body_in_a_blind_spot(
+    fusion: str,
+) -> None:
+    spec = GridSpec(0.1, 40, 40, Pose2(-2.0, -2.0, 0.0))
+    here = Pose2(0.0, 0.0, 0.0)
+    hits = np.array([(-0.32, 0.03), (0.52, 0.03), (-1.2, 0.03)])
+    memory = MapMemory(
+        MapMemoryParams(
+            fusion=fusion, size_m=6.0, footprint_m=(0.2, 0.2, -0.2, 0.0, 0.2, -0.2)
+        )
+    )
+    seen = np.full(spec.shape, 0, np.int8)
+    seen[tuple(np.array([spec.cell_of(*point) for point in hits.tolist()]).T)] = 100
+    memory.fuse(PlacedCostmap(seen, spec, (0.0, 0.0), here, 1, hits=hits))
+    ahead = np.zeros(spec.shape, np.int8)
+    ahead[:, :20] = -1
+    newest = PlacedCostmap(ahead, spec, (0.0, 0.0), here, 2, hits=hits[:0])
+    beside = memory.points_in_blind_spot(newest)
+    memory.clear()
+    memory.fuse(newest)
+    memory.restore(beside)
+    cells = memory.occupancy()
+    behind, before, far = (cells[memory.spec.cell_of(*p)] for p in hits.tolist())
+    assert behind >= 97
+    assert before < 50
+    assert far == -1
+    assert memory.hit_points() == pytest.approx(hits[:1], abs=0.007)
