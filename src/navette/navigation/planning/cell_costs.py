@@ -76,6 +76,11 @@ class CellCosts:
             EdgeTable(weight),
         )
 
+    @property
+    def far_unknown(self) -> np.uint8:
+        """Cost of an unknown cell that no obstacle is near to."""
+        return max(self.by_level[-1], self.unknown)
+
     def fill(
         self,
         occupancy: NDArray[np.int8],

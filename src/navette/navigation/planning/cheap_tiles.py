@@ -26,14 +26,15 @@ class CheapTiles:
     Args:
         cost: (H, W) cell costs.
         floor: cost of a cell from which it is not cheap.
+        window: no cell outside of it is cheap.
     """
 
-    def __init__(self, cost: NDArray[np.uint8], floor: int) -> None:
+    def __init__(self, cost: NDArray[np.uint8], floor: int, window: CellWindow) -> None:
         self._floor = floor
         shape = tuple(-(-size // TILE) for size in cost.shape)
         self._cheap = np.zeros(shape, np.bool_)
         self._distances: NDArray[np.int64] | None = None
-        self.update(cost, CellWindow.whole(cost.shape))
+        self.update(cost, window)
 
     def update(self, cost: NDArray[np.uint8], window: CellWindow) -> None:
         """Mark the tiles of a window of the grid (H, W)."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
+    UNKNOWN,
     CellWindow,
     GridSpec,
     ObstacleGrid,
@@ -199,12 +200,13 @@ def planning_grid(
         )
     costs = CellCosts.of(params, body.closed_m, body.circumscribed_m, spec.resolution)
     obstacles = (occupancy >= params.lethal_cost).view(np.uint8)
-    distance_m = np.empty(spec.shape, np.float32)
-    cost = np.zeros(spec.shape, np.uint8)
-    whole = costs.measure(
-        obstacles, distance_m, spec.resolution, CellWindow.whole(spec.shape)
-    )
-    costs.fill(occupancy, distance_m, cost, whole)
+    # Outside the known part all cells are alike: unknown, and far from obstacles.
+    known = CellWindow.of(occupancy != UNKNOWN)
+    distance_m = np.full(spec.shape, costs.reach_m, np.float32)
+    cost = np.full(spec.shape, costs.far_unknown, np.uint8)
+    if not known.is_empty:
+        near = costs.measure(obstacles, distance_m, spec.resolution, known)
+        costs.fill(occupancy, distance_m, cost, near)
     has_floor = 0 < costs.unknown < LETHAL
     return PlanningGrid(
         spec,
@@ -214,7 +216,7 @@ def planning_grid(
         costs,
         params.clearance_margin_m,
         hits,
-        CheapTiles(cost, int(costs.unknown)) if has_floor else None,
+        CheapTiles(cost, int(costs.unknown), known) if has_floor else None,
     )
 
 

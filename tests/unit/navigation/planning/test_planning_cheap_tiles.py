@@ -34,7 +34,7 @@ def test_the_path_costs_as_much_as_that_of_a_full_search(seed: int) -> None:
     cost[start] = cost[goal] = FLOOR
     table = EdgeTable(weight=float(rng.choice([3.0, 50.0])))
     expected = int(cost_to_go(cost, [(goal, 0)], table=table)[start])
-    search, cheap = AStar(), CheapTiles(cost, FLOOR)
+    search, cheap = AStar(), CheapTiles(cost, FLOOR, CellWindow.whole(cost.shape))
     found = search.search(cost, start, goal, table=table, cheap=cheap)
     assert (None if expected >= 1 << 60 else expected) == (found and found[1])
     if found is None:
@@ -55,7 +55,7 @@ def test_the_path_costs_as_much_as_that_of_a_full_search(seed: int) -> None:
 def test_distances_never_exceed_those_to_the_nearest_cheap_cell(seed: int) -> None:
     rng = np.random.default_rng(seed)
     cost = partly_known(rng, (260, 200))
-    cheap = CheapTiles(cost, FLOOR)
+    cheap = CheapTiles(cost, FLOOR, CellWindow.whole(cost.shape))
     nearest = cost_to_go(
         np.zeros_like(cost),
         [((int(r), int(c)), 0) for r, c in np.argwhere(cost < FLOOR)],
@@ -69,11 +69,11 @@ def test_distances_never_exceed_those_to_the_nearest_cheap_cell(seed: int) -> No
 def test_tiles_follow_the_costs() -> None:
     rng = np.random.default_rng(3)
     cost = partly_known(rng, (90, 61))
-    cheap = CheapTiles(cost, FLOOR)
+    cheap = CheapTiles(cost, FLOOR, CellWindow.whole(cost.shape))
     for _ in range(20):
         row, column = rng.integers(0, 80), rng.integers(0, 50)
         window = CellWindow(row, row + 9, column, column + 11)
         cost[window.slices] = rng.choice(np.array([0, FLOOR, LETHAL], np.uint8))
         cheap.update(cost, window)
-        fresh = CheapTiles(cost, FLOOR)
+        fresh = CheapTiles(cost, FLOOR, CellWindow.whole(cost.shape))
         np.testing.assert_array_equal(cheap.distances(), fresh.distances())

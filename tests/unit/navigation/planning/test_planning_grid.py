@@ -8,8 +8,9 @@ from planning_worlds import COURSE_FOOTPRINT, empty_map, fill
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec
 from navette.navigation.planning import path_shape
+from navette.navigation.planning.cheap_tiles import CheapTiles
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planning_grid import (
@@ -182,3 +183,33 @@ def test_from_a_start_without_margin_the_clearance_must_not_decrease() -> None:
     assert check_path(np.concatenate([out[:1], closer]), grid, BODY).first_bad == 1
     back_in = np.concatenate([out, out[::-1]])
     assert not check_path(back_in, grid, BODY).fits, "once out, the margin holds"
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    occupancy, spec = empty_map(12, 8)
+    rows, columns = spec.shape
+    first = rng.integers(0, (rows, columns))
+    last = np.minimum(first + rng.integers(0, 60, 2), (rows, columns))  # may be empty
+    part = slice(first[0], last[0]), slice(first[1], last[1])
+    known = rng.choice(np.array([UNKNOWN, 0, 40, 100], np.int8), spec.shape)
+    occupancy[:] = UNKNOWN
+    occupancy[part] = known[part]
+    params = PlannerParams(
+        footprint_m=COURSE_FOOTPRINT,
+        unknown_cost=float(rng.choice([0.0, 0.25, 3.0])),
+        map_cost_weight=float(rng.choice([0.0, 2.0])),
+        allow_unknown=bool(rng.random() < 0.7),
+    )
+    grid = planning_grid(occupancy, spec, BODY, params)
+    distance_m = np.empty(spec.shape, np.float32)
+    cost = np.zeros(spec.shape, np.uint8)
+    whole = CellWindow.whole(spec.shape)
+    grid.costs.measure(grid.obstacles, distance_m, spec.resolution, whole)
+    grid.costs.fill(occupancy, distance_m, cost, whole)
+    assert (grid.distance_m == distance_m).all()
+    assert (grid.cost == cost).all()
+    if grid.cheap is not None:
+        every = CheapTiles(cost, int(grid.costs.unknown), whole)
+        assert (grid.cheap.distances() == every.distances()).all()
