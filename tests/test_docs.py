@@ -89,7 +89,9 @@ def test_files_and_folders_of_the_design_exist() -> None:
     )
 
 
-@pytest.mark.parametrize("script", ["picture.py", "gallery.py", "screenshot.py"])
+@pytest.mark.parametrize(
+    "script", ["picture.py", "gallery.py", "map_picture.py", "screenshot.py"]
+)
 def test_scripts_that_make_pictures_load(
     script: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

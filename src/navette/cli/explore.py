@@ -80,6 +80,11 @@ def explore(
             "--costmap, --mapping, --localization, --replace and -p choose the "
             "methods of a simulated one; leave them out"
         )
+    if running and record is not None:
+        raise InvalidValueError(
+            "--running explores with the robot as it runs: record it with "
+            f"navette bag record -o {record}"
+        )
     if running:
         code = _explore_running(screen, max_time, as_json=as_json)
     else:

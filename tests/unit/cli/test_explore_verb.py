@@ -5,6 +5,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
+from navette.bags import open_bag
 from navette.cli.app import app
 
 PLANNER = """
@@ -19,8 +20,12 @@ def test_methods_parameters_and_generated_worlds_are_taken(tmp_path: Path) -> No
     own.write_text(PLANNER, encoding="utf-8")
     words = ["explore", "rooms:1", "--headless", "--json", "--max-time", "6"]
     words += ["--planner", f"{own}:plan", "-p", "planner.goal_tolerance_m=0.4"]
+    recording = tmp_path / "drive.mcap"
+    words += ["--record", str(recording)]
     ended = CliRunner().invoke(app, words)
     assert "planned by my own" in ended.stdout
+    with open_bag(recording) as bag:
+        assert "/lidar" in {each.topic for each in bag.topics}
     report = json.loads(ended.stdout[ended.stdout.index("{") :])
     assert report["goals"] >= 1
 
@@ -29,3 +34,6 @@ def test_methods_of_a_running_robot_are_refused() -> None:
     ended = CliRunner().invoke(app, ["explore", "--running", "--planner", "dijkstra"])
     assert ended.exit_code != 0
     assert "--planner" in str(ended.exception) + ended.stderr
+    ended = CliRunner().invoke(app, ["explore", "--running", "--record", "x.mcap"])
+    assert ended.exit_code != 0
+    assert "navette bag record" in str(ended.exception) + ended.stderr
