@@ -25,7 +25,7 @@ def test_methods_parameters_and_generated_worlds_are_taken(tmp_path: Path) -> No
     ended = CliRunner().invoke(app, words)
     assert "planned by my own" in ended.stdout
     with open_bag(recording) as bag:
-        assert "/lidar" in {each.topic for each in bag.topics}
+        assert "/lidar" in {each.name for each in bag.topics}
     report = json.loads(ended.stdout[ended.stdout.index("{") :])
     assert report["goals"] >= 1
 
