@@ -91,7 +91,7 @@ class FileFormatError(NavetteError, ValueError):
         self.reason = reason
 
 
-class DecodeError(NavetteError, ValueError):
+class DecodeError(NavetteError, ValueError, RuntimeError):
     """Bytes cannot be decoded as the given type."""
 
 

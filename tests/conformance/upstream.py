@@ -14,7 +14,9 @@ suites is part of this repository.
 # ruff: noqa: T201 - it prints a report
 
 import argparse
+import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -29,7 +31,10 @@ SUITES = {
     "launch": "launch/test/launch",
     "launch_xml": "launch_xml/test/launch_xml",
     "launch_yaml": "launch_yaml/test/launch_yaml",
+    "launch_testing": "launch_testing/test/launch_testing",
+    "launch_pytest": "launch_pytest/test/launch_pytest",
     "launch_ros": "test_launch_ros/test/test_launch_ros",
+    "launch_testing_ros": "launch_testing_ros/test/examples",
     "message_filters": "test",
     "rosidl_runtime_py": "test/rosidl_runtime_py",
 }
@@ -37,6 +42,15 @@ SUITES = {
 _FIXTURES = Path("test_msgs/src")
 #: Python packages in place of C++ packages whose components the tests load.
 STAND_INS = Path(__file__).with_name("stand_ins")
+#: Prints the data files that setup.py gives.
+_DATA_FILES = """
+import json, runpy, setuptools
+setuptools.setup = lambda **given: print(json.dumps(given.get("data_files", [])))
+runpy.run_path("setup.py", run_name="__main__")
+"""
+_LAUNCH_TEST = """#!/bin/sh
+exec {python} -m navette run launch_testing.launch_test:main "$@"
+"""
 LINTERS = ("copyright", "flake8", "pep257", "mypy", "xmllint")
 #: Seconds a test may take, and a suite.
 TEST_TIMEOUT_S, SUITE_TIMEOUT_S = 60, 900
@@ -52,6 +66,31 @@ class Outcome:
     @property
     def total(self) -> int:
         return len(self.passed) + len(self.failed)
+
+
+def install(folders: list[Path], prefix: Path) -> None:
+    """Copy the data files of the folders' Python packages as a build would.
+
+    The suites use programs and examples in the share and lib folders of packages.
+    """
+    for script in (path for each in folders for path in each.glob("**/setup.py")):
+        done = subprocess.run(
+            [sys.executable, "-c", _DATA_FILES],
+            cwd=script.parent,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        for target, files in json.loads(done.stdout):
+            folder = prefix / target
+            folder.mkdir(parents=True, exist_ok=True)
+            for file in map(script.parent.joinpath, files):
+                if file.is_file():
+                    shutil.copy(file, folder)
+    command = prefix / "bin" / "launch_test"
+    command.parent.mkdir()
+    command.write_text(_LAUNCH_TEST.format(python=sys.executable))
+    command.chmod(0o755)
 
 
 def find_suites(folders: list[Path]) -> dict[str, Path]:
@@ -80,7 +119,8 @@ def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome
         packages: folders of packages that the tests launch.
     """
     with tempfile.TemporaryDirectory(prefix="navette_upstream_") as scratch:
-        report = Path(scratch) / "report.xml"
+        report, prefix = Path(scratch) / "report.xml", Path(scratch) / "install"
+        install(packages, prefix)
         command = [
             *(sys.executable, "-m", "pytest", str(folder), f"--junitxml={report}"),
             *("-p", "navette.ros2.names.pytest_plugin", "-p", "no:cacheprovider"),
@@ -99,6 +139,8 @@ def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome
                     map(str, [folder.parent, STAND_INS, *search])
                 ),
                 "NAVETTE_PATH": os.pathsep.join(map(str, packages)),
+                "AMENT_PREFIX_PATH": str(prefix),
+                "PATH": f"{prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
                 "PYTHONDONTWRITEBYTECODE": "1",
                 "ROS_LOG_DIR": scratch,
                 # The tests' nodes and processes meet, and no others.

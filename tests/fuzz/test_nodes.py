@@ -102,9 +102,9 @@ def test_services(subject: Subject) -> None:
             extremes = Extremes(seed)
             Outputs(graph, node)
             services = [
-                (s.srv_name, s.srv_type)
+                (s.service_name, s.srv_type)
                 for s in node.services
-                if not s.srv_name.endswith(_STOPS_TIME)
+                if not s.service_name.endswith(_STOPS_TIME)
             ]
             for name, kind in services:
                 client = graph.node.create_client(kind, name)

@@ -159,12 +159,12 @@ def _change(here: "Node", name: str, transition: Any) -> Any:
 
     client = here.create_client(ChangeState, f"{name}/change_state")
     if not client.wait_for_service(RESPONSE_TIMEOUT_S):
-        fail(f"no server of {client.srv_name}")
+        fail(f"no server of {client.service_name}")
     future = client.call_async(ChangeState.Request(transition=transition))
     if not wait_for(here, future.done, RESPONSE_TIMEOUT_S):
         note(f"waiting for {name}; Ctrl-C stops the wait, not the transition")
         wait_for(here, lambda: future.done() or not client.service_is_ready())
-    got = response_of(future, client.srv_name)
+    got = response_of(future, client.service_name)
     return fail(got.reason) if got.response is None else got.response
 
 

@@ -72,6 +72,10 @@ def _setters(spec: MessageSpec) -> list[str]:
         lines.append(f"def _set_{index}(_self, _value):")
         lines.append(f" if not ({_quick_test(index, field)}):")
         lines.append(f"  _value = _check_{index}(_value)")
+        if field.type.is_numeric and not field.type.is_scalar:
+            # As in rclpy, a message does not share an array with the caller.
+            copied = ".copy()" if field.type.container == "array" else "[:]"
+            lines += [" else:", f"  _value = _value{copied}"]
         lines.append(f" _self._{field.name} = _value")
     return lines
 

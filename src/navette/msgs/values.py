@@ -233,14 +233,14 @@ def _array_checker(where: str, type_: FieldType) -> Checker:
     """Numbers: a numpy array if the size is fixed, else an ``array.array``."""
     to_ndarray = _ndarray_checker(where, type_)
     if type_.container == "array":
-        return to_ndarray
+        return lambda value: np.array(to_ndarray(value))
     typecode = TYPECODES[type_.base]
     is_octet = DTYPES[type_.base].itemsize == 1
 
     def check(value: Any) -> "array[Any]":
         if isinstance(value, array) and value.typecode == typecode:
             _check_length(where, type_, len(value))
-            return value
+            return value[:]
         numbers = array(typecode)
         if is_octet and isinstance(value, (bytes, bytearray)):
             _check_length(where, type_, len(value))

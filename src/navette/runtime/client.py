@@ -57,9 +57,12 @@ class Client(ServiceEndpoint):
         qos_profile: QoSProfile,
         events: ServiceEvents,
         entities: NodeEntities,
+        *,
+        srv_name: str,
     ) -> None:
         self.context = context = entities.context
         self.endpoint = endpoint
+        self.srv_name = srv_name
         self.group = callback_group
         self.qos_profile = qos_profile
         self.ports: list[ClientPort] = []
@@ -90,8 +93,8 @@ class Client(ServiceEndpoint):
             InvalidHandle: the client was destroyed.
         """
         if self._destroyed:
-            raise InvalidHandle(f"client of {self.srv_name} was destroyed")
-        check_type(request, self.srv_type.Request, f"service {self.srv_name}")
+            raise InvalidHandle(f"client of {self.service_name} was destroyed")
+        check_type(request, self.srv_type.Request, f"service {self.service_name}")
         future: Future[Any] = ResponseFuture()
         with self._lock:
             self._sequence = sequence = self._sequence + 1
@@ -119,7 +122,7 @@ class Client(ServiceEndpoint):
         """
         waiting = group_of_this_thread()
         check_wait(
-            f"call() of {self.srv_name}",
+            f"call() of {self.service_name}",
             in_driver_thread=self._loop.in_driver_thread,
             same_group=waiting is self.group,
             exclusive=self.group.exclusive,
@@ -134,7 +137,7 @@ class Client(ServiceEndpoint):
             self.remove_pending_request(future)
             servers = sum(port.server_count for port in self.ports)
             raise TimeoutError(
-                f"service {self.srv_name}: no response "
+                f"service {self.service_name}: no response "
                 + (f"in {timeout_sec:g} s" if timeout_sec is not None else "")
                 + ("" if servers else " (the service has no server)")
             )
@@ -181,7 +184,7 @@ class Client(ServiceEndpoint):
         if reply.message is None:
             error = ServiceTimeoutError if reply.timed_out else ServiceFailedError
             future.set_exception(
-                error(f"service {self.srv_name} failed: {reply.failure}")
+                error(f"service {self.service_name} failed: {reply.failure}")
             )
         else:
             self._events.report(

@@ -10,11 +10,11 @@ from functools import cache
 from typing import Any
 from weakref import WeakSet
 
-from navette.errors import InvalidValueError
+from navette.errors import FileFormatError, InvalidValueError
 from navette.files.runs import PrivateRun, RunInfo
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import ContextClock
-from navette.runtime.exceptions import RCLError
+from navette.runtime.exceptions import ParameterFileError, RCLError
 from navette.runtime.graph import Graph
 from navette.runtime.handles import HasHandle
 from navette.runtime.input_check import SharedInputChecks
@@ -136,7 +136,10 @@ class Context(HasHandle):
             arguments = parse_ros_arguments(sys.argv if args is None else args)
             self._domain_id = environment_domain() if domain_id is None else domain_id
             joined = self._join_network(domain_id)
-            self.overrides.add_arguments(arguments.parameters, "command line")
+            try:
+                self.overrides.add_arguments(arguments.parameters, "command line")
+            except FileFormatError as error:
+                raise ParameterFileError(error.path, error.reason, error.line) from None
             self.arguments = arguments
             if initialize_logging:
                 self._start_logging(arguments, console_level)

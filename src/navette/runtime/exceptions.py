@@ -5,6 +5,7 @@
 from typing import Any, ClassVar
 
 from navette.errors import (
+    FileFormatError,
     InvalidNameError,
     InvalidValueError,
     NavetteError,
@@ -42,6 +43,14 @@ class RCLError(NavetteError, RuntimeError):
 
 class RosArgumentsError(InvalidValueError, RCLError):
     """A ROS argument of the command line has the wrong form."""
+
+
+class ParameterFileError(FileFormatError, RCLError):
+    """A parameter file of the command line cannot be read."""
+
+
+class CallbackSignatureError(InvalidValueError, TypeError, RuntimeError):
+    """A callback cannot take the arguments that it would be called with."""
 
 
 class UnknownROSArgsError(RosArgumentsError):
@@ -166,6 +175,14 @@ class InvalidParameterTypeException(ParameterException):
             f"({desired_parameter.type_.name}), expected {expected_type}",
             desired_parameter.name,
         )
+
+
+class OverrideTypeError(InvalidParameterTypeException):
+    """A parameter file or the command line gives a value of another type."""
+
+    def __init__(self, text: str, name: str) -> None:
+        ParameterError.__init__(self, text)
+        self.parameters = name
 
 
 class InvalidParameterValueException(ParameterException):

@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
-from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     Threads,
 )
 from navette.runtime.context import Context
+from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.names import NodeRemapper, full_node_name
 from navette.runtime.qos import QoSProfile
 from navette.transports import Endpoint, EndpointKind
@@ -101,10 +101,10 @@ class NodeEntities:
         """Return an endpoint of the node with the expanded and remapped name.
 
         Raises:
-            InvalidValueError: the node was destroyed.
+            InvalidHandle: the node was destroyed.
         """
         if self.is_destroyed:
-            raise InvalidValueError(f"node {self.full_name} was destroyed")
+            raise InvalidHandle(f"node {self.full_name} was destroyed")
         endpoint = Endpoint(
             kind=kind,
             topic=self.remapper.resolve(name, is_service=kind in _SERVICE_KINDS),

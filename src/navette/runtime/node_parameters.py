@@ -12,6 +12,7 @@ from navette.msgs.rcl_interfaces.msg import (
     SetParametersResult,
 )
 from navette.runtime.exceptions import (
+    OverrideTypeError,
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
@@ -138,8 +139,8 @@ class NodeParameters:
             return coerced(name, value, kind)
         except ParameterError as error:
             where = f" (from {origin})" if origin else ""
-            raise ParameterError(
-                f"node {self._node_full_name}: {error}{where}"
+            raise OverrideTypeError(
+                f"node {self._node_full_name}: {error}{where}", name
             ) from None
 
     def undeclare_parameter(self, name: str) -> None:

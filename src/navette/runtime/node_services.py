@@ -48,6 +48,7 @@ class NodeServices:
             qos_profile,
             ServiceEvents(endpoint, self._topics),
             self._entities,
+            srv_name=srv_name,
             deferred=deferred,
         )
         self._entities.add(service)
@@ -77,6 +78,7 @@ class NodeServices:
             qos_profile,
             ServiceEvents(endpoint, self._topics),
             self._entities,
+            srv_name=srv_name,
         )
         self._entities.add(client)
         try:

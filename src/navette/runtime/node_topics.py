@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 from navette.errors import NavetteError
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.exceptions import CallbackSignatureError
 from navette.runtime.log import Logger
 from navette.runtime.node_entities import NodeEntities
 from navette.runtime.node_parameters import NodeParameters
@@ -17,6 +18,7 @@ from navette.runtime.qos_events import (
 )
 from navette.runtime.qos_overriding_options import QoSOverridingOptions, overridden
 from navette.runtime.qos_watch import EndpointWatch
+from navette.runtime.signatures import can_take
 from navette.runtime.subscription import ContentFilterOptions, Subscription
 from navette.runtime.type_support import interface_name
 from navette.transports import Endpoint, EndpointKind
@@ -85,8 +87,11 @@ class NodeTopics:
         other_types: Sequence[type | str] = (),
         ignore_local_publications: bool = False,
     ) -> Subscription[MsgT]:
-        if not callable(callback):
-            raise TypeError(f"topic {topic}: callback {callback!r} is not callable")
+        if not can_take(callback, 1, 2):
+            raise CallbackSignatureError(
+                f"topic {topic}: callback {callback!r}: expected a function of the "
+                "message, or of the message and its MessageInfo"
+            )
         kind = EndpointKind.SUBSCRIPTION
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
         endpoint = self._endpoint(kind, msg_type, topic, qos, other_types)

@@ -170,7 +170,8 @@ class Parameter(Generic[T]):
             _plain(other._value),
         )
 
-    __hash__ = None  # type: ignore[assignment]  # values may be lists
+    def __hash__(self) -> int:
+        return hash((self._name, self._type))  # values may be lists
 
     def get_parameter_value(self) -> ParameterValue:
         message = ParameterValue(type=int(self._type))

@@ -28,8 +28,10 @@ DeadlineBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
 LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
 
 
-class InvalidQoSProfileException(InvalidValueError):  # noqa: N818 - rclpy's name
-    """The profile's settings are incomplete or contradict each other."""
+class InvalidQoSProfileException(  # noqa: N818 - rclpy's name
+    InvalidValueError, AssertionError
+):
+    """The profile's settings are invalid, incomplete or contradict each other."""
 
 
 class QoSProfile:
@@ -76,10 +78,12 @@ class QoSProfile:
         self.depth = _checked_depth(10 if depth is None else depth)
         self.reliability = ReliabilityPolicy(reliability)
         self.durability = DurabilityPolicy(durability)
-        self.lifespan = lifespan or Duration()
-        self.deadline = deadline or Duration()
+        self.lifespan = _checked_duration("lifespan", lifespan)
+        self.deadline = _checked_duration("deadline", deadline)
         self.liveliness = LivelinessPolicy(liveliness)
-        self.liveliness_lease_duration = liveliness_lease_duration or Duration()
+        self.liveliness_lease_duration = _checked_duration(
+            "liveliness_lease_duration", liveliness_lease_duration
+        )
         self.avoid_ros_namespace_conventions = avoid_ros_namespace_conventions
 
     def to_endpoint_qos(self) -> EndpointQos:
@@ -126,6 +130,14 @@ class QoSProfile:
 
 def _shown(value: Any) -> str:
     return getattr(value, "name", None) or str(value)
+
+
+def _checked_duration(name: str, value: Duration | None) -> Duration:
+    if value is not None and not isinstance(value, Duration):
+        raise InvalidQoSProfileException(
+            f"QoS {name} {value!r}: expected a Duration, as in Duration(seconds=1.0)"
+        )
+    return value or Duration()
 
 
 def _checked_depth(depth: Any) -> int:

@@ -39,6 +39,7 @@ class Service(ServiceEndpoint, Entity):
         "endpoint",
         "ports",
         "qos_profile",
+        "srv_name",
     )
 
     def __init__(
@@ -50,9 +51,11 @@ class Service(ServiceEndpoint, Entity):
         events: ServiceEvents,
         entities: NodeEntities,
         *,
+        srv_name: str,
         deferred: bool = False,
     ) -> None:
         self.endpoint = endpoint
+        self.srv_name = srv_name
         self.callback = callback
         self.group = callback_group
         self.qos_profile = qos_profile
@@ -99,7 +102,7 @@ class Service(ServiceEndpoint, Entity):
         expected = self.srv_type.Response
         if not isinstance(response, expected):
             raise MessageError(
-                f"service {self.srv_name}: the callback must return its "
+                f"service {self.service_name}: the callback must return its "
                 f"{type_name(expected)}, got {response!r}"
             )
         for port in self.ports:

@@ -20,6 +20,7 @@ class ServiceEndpoint(Destroyable):
     __slots__ = ()
 
     endpoint: Endpoint
+    srv_name: str
     group: CallbackGroup
     _events: ServiceEvents
 
@@ -30,11 +31,8 @@ class ServiceEndpoint(Destroyable):
         return get_interface(self.endpoint.type_name)
 
     @property
-    def srv_name(self) -> str:
-        return self.endpoint.topic
-
-    @property
     def service_name(self) -> str:
+        """The full name; ``srv_name`` is the one that the program gave."""
         return self.endpoint.topic
 
     @property

@@ -14,6 +14,17 @@ def takes_arguments(callback: Callable[..., Any], count: int) -> bool:
     return not _binds(signature, count - 1) and _binds(signature, count)
 
 
+def can_take(callback: Any, *counts: int) -> bool:
+    """Whether ``callback`` is a function of one of these numbers of arguments."""
+    if not callable(callback):
+        return False
+    try:
+        signature = inspect.signature(callback)
+    except (TypeError, ValueError):  # builtins without a signature
+        return True
+    return any(_binds(signature, count) for count in counts)
+
+
 def _binds(signature: inspect.Signature, count: int) -> bool:
     try:
         signature.bind(*[object()] * count)

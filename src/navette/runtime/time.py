@@ -164,6 +164,8 @@ class Time:
             self._check_comparable(other)
             return Duration(nanoseconds=self._ns - other._ns)
         if isinstance(other, Duration):
+            if other.nanoseconds > self._ns:
+                raise ValueError(f"{self} - {other} is a negative time")
             return self._moved(-other.nanoseconds)
         return NotImplemented
 

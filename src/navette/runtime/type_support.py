@@ -16,7 +16,9 @@ SrvEventT = TypeVar("SrvEventT")
 _KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 
 
-class NoTypeSupportImportedException(MessageError, RuntimeError):  # noqa: N818 - rclpy's
+class NoTypeSupportImportedException(  # noqa: N818 - rclpy's name
+    MessageError, RuntimeError, AttributeError
+):
     """The class is not an interface, or not of the expected kind."""
 
 

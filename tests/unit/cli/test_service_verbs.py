@@ -198,7 +198,7 @@ def test_call_of_a_server_that_fails(here: World, adder: Node) -> None:
 
 
 def test_echo(here: World, adder: Node) -> None:
-    (server,) = [s for s in adder.services if s.srv_name == "/add"]
+    (server,) = [s for s in adder.services if s.service_name == "/add"]
     server.configure_introspection(
         adder.get_clock(),
         qos_profile_system_default,

@@ -163,11 +163,15 @@ def test_floats_in_arrays_may_be_nan_or_infinite() -> None:
     assert np.isnan(scan.ranges[1])
 
 
-def test_an_array_of_the_right_type_is_kept_as_it_is() -> None:
-    data = array("b", [0, 1])
-    assert OccupancyGrid(data=data).data is data
-    matrix = np.zeros(36)
-    assert PoseWithCovariance(covariance=matrix).covariance is matrix
+def test_a_message_does_not_share_an_array_with_the_caller() -> None:
+    data, covariance = array("b", [0, 1]), np.zeros(36)
+    grid = OccupancyGrid(data=data)
+    assigned = PoseWithCovariance()
+    assigned.covariance = covariance
+    given = PoseWithCovariance(covariance=covariance)
+    data[0], covariance[0] = 7, 7.0
+    assert list(grid.data) == [0, 1]
+    assert assigned.covariance[0] == given.covariance[0] == 0.0
     names, flags = ["a"], [True]
     assert JointState(name=names).name is names
     assert ParameterValue(bool_array_value=flags).bool_array_value is flags

@@ -75,7 +75,7 @@ def test_every_node_serves_its_parameters(graph: GraphHarness, node: Node) -> No
         )
     ]
     silent = Node("silent", context=graph.context, start_parameter_services=False)
-    assert [each.srv_name for each in silent.services] == [
+    assert [each.service_name for each in silent.services] == [
         "/silent/get_type_description"
     ]
 

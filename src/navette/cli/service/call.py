@@ -103,7 +103,7 @@ def _call_once(
         show(f"{styled('requester: making request:', dim=True)} {request!r}\n")
     if not wait_for(here, future.done, timeout_s):
         fail(
-            f"service {client.srv_name}: no response in {timeout_s:g} s"
+            f"service {client.service_name}: no response in {timeout_s:g} s"
             " (-w S waits longer)"
         )
     if future.exception() is not None:

@@ -125,7 +125,7 @@ class _ServiceCall:
             self._client.call_async(self._request).add_done_callback(self._on_response)
         elif self._robot.now_ns - self._since_ns >= _SERVER_WAIT_NS:
             what = "no response of" if self._sent else "no"
-            name = self._client.srv_name
+            name = self._client.service_name
             self._end(CallResult(UNAVAILABLE, None, f"{what} service {name}"))
 
     def cancel(self) -> None:
