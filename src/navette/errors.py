@@ -19,6 +19,7 @@ NavetteError
 
 from collections.abc import Sequence
 from pathlib import Path
+from types import MemberDescriptorType
 from typing import Any
 
 
@@ -115,17 +116,17 @@ class CallbackError(NavetteError, RuntimeError):
     """A callback raised; the original exception is ``original`` and ``__cause__``.
 
     The error that a spin raises is also an instance of the original class, with its
-    attributes: ``except ValueError`` around a spin catches a callback's ValueError, as
-    in ROS 2.
+    attributes and ``args``: ``except ValueError`` around a spin catches a callback's
+    ValueError, as in ROS 2. Its text adds the node, the callback and the time.
     """
 
     def __init__(self, node: str, source: str, stamp_ns: int, cause: object) -> None:
-        # Not super(): the next class of a joint class may take other arguments.
-        Exception.__init__(
-            self,
+        self._text = (
             f"node {node}: callback of {source} raised at "
-            f"{stamp_ns / 1e9:.3f} s: {type(cause).__name__}: {cause}",
+            f"{stamp_ns / 1e9:.3f} s: {type(cause).__name__}: {cause}"
         )
+        # Not super(): the next class of a joint class may take other arguments.
+        Exception.__init__(self, *getattr(cause, "args", (self._text,)))
         self.node = node
         self.source = source
         self.stamp_ns = stamp_ns
@@ -138,16 +139,26 @@ class CallbackError(NavetteError, RuntimeError):
         """Make an error that is also an instance of ``cause``'s class, if possible."""
         error = _blank(_joint_class(type(cause)))
         CallbackError.__init__(error, node, source, stamp_ns, cause)
+        if isinstance(error, type(cause)):
+            _copy_members(cause, error)
         return error
 
     def __str__(self) -> str:
         # Not that of the original class: KeyError would quote the text.
-        return str(self.args[0])
+        return self._text
 
     def __getattr__(self, name: str) -> Any:
         if name == "original" or name.startswith("__"):
             raise AttributeError(name)
         return getattr(self.original, name)
+
+
+def _copy_members(source: Exception, target: Exception) -> None:
+    """Copy the attributes of built-in classes, such as an OSError's errno."""
+    for kind in type(source).__mro__:
+        for name, member in vars(kind).items():
+            if isinstance(member, MemberDescriptorType) and name[:2] != "__":
+                setattr(target, name, getattr(source, name, None))
 
 
 def _joint_class(kind: type[Exception]) -> type[CallbackError]:

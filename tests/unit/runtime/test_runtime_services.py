@@ -364,8 +364,8 @@ def test_names_and_attributes(graph: GraphHarness) -> None:
     qos = QoSProfile(depth=3)
     service = node.create_service(AddTwoInts, "~/add", add, qos_profile=qos)
     client = node.create_client(AddTwoInts, "/sum", qos_profile=qos)
-    assert (service.srv_name, service.service_name) == ("sum", "/sum")
-    assert (client.srv_name, client.service_name) == ("sum", "/sum")
+    assert (service.srv_name, service.service_name) == ("~/add", "/sum")
+    assert (client.srv_name, client.service_name) == ("/sum", "/sum")
     assert service.srv_type is client.srv_type is AddTwoInts
     assert service.qos_profile is client.qos_profile is qos
     assert service in node.services

@@ -269,8 +269,18 @@ def test_raising_callback_names_node_topic_and_stamp(graph: GraphHarness) -> Non
 
 
 def test_a_callback_that_is_not_callable_raises(graph: GraphHarness) -> None:
-    with pytest.raises(TypeError, match="not callable"):
+    with pytest.raises(TypeError, match="callback None: expected a function"):
         graph.node.create_subscription(String, "t", None, 10)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "callback", [None, lambda: None, lambda message, info, more: None]
+)
+def test_a_callback_of_another_signature_raises(
+    graph: GraphHarness, callback: Any
+) -> None:
+    with pytest.raises(RuntimeError, match="expected a function of the message"):
+        graph.node.create_subscription(String, "t", callback, 10)
 
 
 @pytest.mark.parametrize("qos", [-1, "10", True, None])
