@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids.spec import GridSpec
+from navette.navigation.grids.spec import UNKNOWN, GridSpec
+
+_STRIP = 256  # rows
 
 
 class CellWindow(NamedTuple):
@@ -41,6 +43,15 @@ class CellWindow(NamedTuple):
         first_row, last_row = int(rows[0]), int(rows[-1]) + 1
         columns = np.flatnonzero(mask[first_row:last_row].any(axis=0))
         return cls(first_row, last_row, int(columns[0]), int(columns[-1]) + 1)
+
+    @classmethod
+    def of_known(cls, cells: NDArray[np.int8]) -> "CellWindow":
+        """Return the smallest window of all cells (H, W) that are not unknown."""
+        window = NO_CELLS
+        for first in range(0, cells.shape[0], _STRIP):  # a small mask at a time
+            strip = cls.of(cells[first : first + _STRIP] != UNKNOWN)
+            window = window.union(strip.shifted(first, 0))
+        return window
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -52,6 +52,7 @@ class AStar:
 
     def __init__(self) -> None:
         self._records = np.empty(0, np.int64)
+        self._rimmed = np.empty((0, 0), np.uint8)
         self._pool = new_pool()
         self._stamp = 0
 
@@ -81,7 +82,8 @@ class AStar:
         require_inside(start, cost.shape, "start")
         require_inside(goal, cost.shape, "goal")
         table = table or EdgeTable()
-        grid = SearchGrid.of(cost, table)
+        grid = SearchGrid.of(cost, table, self._rimmed)
+        self._rimmed = grid.cost.reshape(-1, grid.stride)
         if not (grid.is_open(start) and grid.is_open(goal)):
             return None
         if start == goal:

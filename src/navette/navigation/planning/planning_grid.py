@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
-    UNKNOWN,
     CellWindow,
     GridSpec,
     ObstacleGrid,
@@ -22,6 +21,7 @@ from navette.navigation.grids import (
     cells_in_footprint,
     make_obstacles,
     mark_points,
+    sparse_zeros,
 )
 from navette.navigation.planning.cell_costs import CellCosts
 from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
@@ -199,9 +199,10 @@ def planning_grid(
             f"occupancy grid of shape {occupancy.shape}: expected {spec.shape}"
         )
     costs = CellCosts.of(params, body.closed_m, body.circumscribed_m, spec.resolution)
-    obstacles = (occupancy >= params.lethal_cost).view(np.uint8)
     # Outside the known part all cells are alike: unknown, and far from obstacles.
-    known = CellWindow.of(occupancy != UNKNOWN)
+    known = CellWindow.of_known(occupancy)
+    obstacles = sparse_zeros(spec.shape, np.uint8)
+    obstacles[known.slices] = occupancy[known.slices] >= params.lethal_cost
     distance_m = np.full(spec.shape, costs.reach_m, np.float32)
     cost = np.full(spec.shape, costs.far_unknown, np.uint8)
     if not known.is_empty:

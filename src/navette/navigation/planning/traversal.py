@@ -93,8 +93,14 @@ class SearchGrid(NamedTuple):
     diagonal: NDArray[np.int32]
 
     @classmethod
-    def of(cls, cost: NDArray[np.uint8], table: EdgeTable) -> "SearchGrid":
-        rimmed = with_rim(cost)
+    def of(
+        cls,
+        cost: NDArray[np.uint8],
+        table: EdgeTable,
+        rimmed: NDArray[np.uint8] | None = None,
+    ) -> "SearchGrid":
+        """Return the grid of costs (H, W); ``rimmed`` (H + 2, W + 2) is overwritten."""
+        rimmed = with_rim(cost, rimmed)
         return cls(rimmed.reshape(-1), rimmed.shape[1], table.straight, table.diagonal)
 
     def index_of(self, cell: Cell) -> int:
@@ -105,8 +111,14 @@ class SearchGrid(NamedTuple):
         return bool(self.straight[self.cost[self.index_of(cell)]])
 
 
-def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def with_rim(
+    cost: NDArray[np.uint8], rimmed: NDArray[np.uint8] | None = None
+) -> NDArray[np.uint8]:
     """Return cost (H, W) as (H + 2, W + 2) with a lethal rim: no bounds checks needed.
+
+    Args:
+        cost: costs of the cells.
+        rimmed: the array to use, if it has that shape.
 
     Raises:
         InvalidValueError: not 2-D uint8, or more than 32000 cells a side.
@@ -120,7 +132,8 @@ def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
         raise InvalidValueError(
             f"cost grid of {height} x {width} cells: must be at most 32000 a side"
         )
-    rimmed = np.empty((height + 2, width + 2), np.uint8)
+    if rimmed is None or rimmed.shape != (height + 2, width + 2):
+        rimmed = np.empty((height + 2, width + 2), np.uint8)
     rimmed[0] = rimmed[-1] = rimmed[:, 0] = rimmed[:, -1] = LETHAL
     rimmed[1:-1, 1:-1] = cost
     return rimmed
