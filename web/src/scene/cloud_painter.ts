@@ -7,42 +7,59 @@ export class CloudPainter {
   #image: ImageData | null = null;
   #pixels = new Uint32Array(0);
   #highest = new Float32Array(0);
+  #positions: Points["positions"] | null = null;
+  #colours: Points["colours"] = undefined;
+  #key = "";
   readonly #canvas = document.createElement("canvas");
 
+  /** Points that are painted already, in the same place, are only copied. */
   paint(context: CanvasRenderingContext2D, points: Points, pose: Transform): void {
     const { width, height } = context.canvas;
     const { a: scale, e: left, f: top } = context.getTransform();
-    this.#prepare(width, height);
-    const { positions, colours } = points;
+    const key = [width, height, scale, left, top, points.sizePx, points.colour, ...pose.translation, ...pose.rotation].join(" ");
+    if (points.positions !== this.#positions || points.colours !== this.#colours || key !== this.#key) {
+      this.#prepare(width, height);
+      this.#fill(points, pose, scale, left, top);
+      this.#canvas.getContext("2d")?.putImageData(this.#image!, 0, 0);
+      [this.#positions, this.#colours, this.#key] = [points.positions, points.colours, key];
+    }
+    context.save();
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.drawImage(this.#canvas, 0, 0);
+    context.restore();
+  }
+
+  /** Without arrays in the loop: each would be an object per point. */
+  #fill({ positions, colours, sizePx, colour }: Points, pose: Transform, scale: number, left: number, top: number): void {
+    const { width, height } = this.#image!;
     const [pixels, highest] = [this.#pixels, this.#highest];
-    const size = Math.max(1, Math.round(points.sizePx * (devicePixelRatio || 1) * 0.7));
-    const [r, g, b] = rgba(points.colour);
+    const size = Math.max(1, Math.round(sizePx * (devicePixelRatio || 1) * 0.7));
+    const [r, g, b] = rgba(colour);
     const plain = ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
     const [ox, oy, oz] = apply(pose, [0, 0, 0]);
     const [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = [apply(pose, [1, 0, 0]), apply(pose, [0, 1, 0]), apply(pose, [0, 0, 1])];
+    // Pixels of a point: the matrix of the pose and the view, once for all points.
+    const [ux, vx, wx, shiftX] = [scale * (ax - ox), scale * (bx - ox), scale * (cx - ox), left + scale * ox - size / 2 + 0.5];
+    const [uy, vy, wy, shiftY] = [-scale * (ay - oy), -scale * (by - oy), -scale * (cy - oy), top - scale * oy - size / 2 + 0.5];
+    const [uz, vz, wz] = [az - oz, bz - oz, cz - oz];
     for (let at = 0; at + 2 < positions.length; at += 3) {
-      const [x, y, z] = [positions[at]!, positions[at + 1]!, positions[at + 2]!];
-      const fx = ox + (ax - ox) * x + (bx - ox) * y + (cx - ox) * z;
-      const fy = oy + (ay - oy) * x + (by - oy) * y + (cy - oy) * z;
-      const fz = oz + (az - oz) * x + (bz - oz) * y + (cz - oz) * z;
-      const column = Math.round(left + scale * fx - size / 2);
-      const row = Math.round(top - scale * fy - size / 2);
-      if (column < 0 || row < 0 || column + size > width || row + size > height) continue;
+      const x = positions[at]!;
+      const y = positions[at + 1]!;
+      const z = positions[at + 2]!;
+      const column = Math.floor(shiftX + ux * x + vx * y + wx * z);
+      const row = Math.floor(shiftY + uy * x + vy * y + wy * z);
+      if (!(column >= 0 && row >= 0 && column + size <= width && row + size <= height)) continue;
+      const up = oz + uz * x + vz * y + wz * z;
       const word = colours ? ((255 << 24) | (colours[at + 2]! << 16) | (colours[at + 1]! << 8) | colours[at]!) >>> 0 : plain;
-      for (let line = row; line < row + size; line++) {
-        for (let pixel = line * width + column; pixel < line * width + column + size; pixel++) {
-          if (fz > highest[pixel]!) {
-            highest[pixel] = fz;
+      for (let line = row * width; line < (row + size) * width; line += width) {
+        for (let pixel = line + column; pixel < line + column + size; pixel++) {
+          if (up > highest[pixel]!) {
+            highest[pixel] = up;
             pixels[pixel] = word;
           }
         }
       }
     }
-    this.#canvas.getContext("2d")?.putImageData(this.#image!, 0, 0);
-    context.save();
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(this.#canvas, 0, 0);
-    context.restore();
   }
 
   #prepare(width: number, height: number): void {
