@@ -1,7 +1,8 @@
-"""Take the pictures of the live view: ``python docs/screenshot.py``. Needs chromium.
+"""Take the pictures of the live view: ``python docs/screenshot.py [NAME]``. Needs
+chromium.
 
-Runs the demo in real time and captures the page during the drive: the workbench, the
-scene in 3D, a phone, and a moving picture.
+Runs the demo for each picture and captures the page during the drive: the workbench,
+the scene in 3D, a phone, and a moving picture.
 """
 
 import base64
@@ -13,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 import urllib.request
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,8 +27,17 @@ FILM = IMAGES / "page.webp"
 FILM_SIZE, FILM_S, FILM_HZ = (960, 600), 14, 4
 
 
+# A slow clock: a busy machine draws as much of the drive as an idle one.
+_SLOW = "navette.connection.callService('/sim/set_rate', { rate: 0.4 })"
+_PAUSE = """navette.connection.callService(
+    '/sim/set_simulation_state', { state: { state: 2 } })"""
+
+
 class Shot(NamedTuple):
-    """A picture: when the robot's clock shows ``moment``, after ``script``."""
+    """A picture of a drive of its own, when the robot's clock shows ``moment``.
+
+    ``script`` runs at the beginning, ``last`` while time stands.
+    """
 
     name: str
     moment: str
@@ -33,6 +45,7 @@ class Shot(NamedTuple):
     height: int
     scale: float
     script: str = ""
+    last: str = ""
 
 
 SHOTS = (
@@ -40,7 +53,12 @@ SHOTS = (
         "page.png", "0:20", 1440, 900, 1.5, "navette.open('plot'); navette.open('tree')"
     ),
     Shot(
-        "page-3d.png", "0:26", 1280, 720, 1.5, "navette.scene.setThreeDimensional(true)"
+        "page-3d.png",
+        "0:26",
+        1280,
+        720,
+        1.5,
+        last="navette.scene.setThreeDimensional(true)",
     ),
     Shot("page-phone.png", "0:32", 390, 780, 2.0),
 )
@@ -67,8 +85,8 @@ class Browser:
         return result.get("result", {}).get("value")
 
 
-def capture(address: str, folder: str) -> None:
-    """Open the page and take all pictures."""
+def capture(folder: str, work: Callable[[Browser], None]) -> None:
+    """Start a browser and take a picture."""
     command = ["chromium", "--headless", "--no-sandbox", "--hide-scrollbars"]
     command += ["--enable-unsafe-swiftshader", "--remote-debugging-port=0"]
     command += [f"--user-data-dir={folder}", "about:blank"]
@@ -82,9 +100,7 @@ def capture(address: str, folder: str) -> None:
         with urllib.request.urlopen(f"http://{found[1]}/json") as reply:
             page = next(each for each in json.load(reply) if each["type"] == "page")
         with connect(page["webSocketDebuggerUrl"], max_size=None) as socket:
-            _film(Browser(socket), address)
-            for shot in SHOTS:
-                _take(Browser(socket), address, shot)
+            work(Browser(socket))
     finally:
         browser.terminate()
         browser.wait()
@@ -114,12 +130,16 @@ def _pause(browser: Browser, seconds: float) -> None:
 
 def _take(browser: Browser, address: str, shot: Shot) -> None:
     _open(browser, address, (shot.width, shot.height), shot.scale)
-    _pause(browser, 5.0)
+    _pause(browser, 3.0)
+    browser.evaluate(_SLOW)
     browser.evaluate(shot.script)
-    _pause(browser, 12.0)  # plots fill
     clock = "document.querySelector('#clock')?.textContent ?? ''"
     while (browser.evaluate(clock) or "") < shot.moment:
         _pause(browser, 0.2)
+    if shot.last:
+        browser.evaluate(_PAUSE)
+        browser.evaluate(shot.last)
+        _pause(browser, 8.0)  # without a graphics card
     (IMAGES / shot.name).write_bytes(_picture(browser))
 
 
@@ -143,7 +163,8 @@ def _film(browser: Browser, address: str) -> None:
     )
 
 
-def main() -> None:
+def with_demo(work: Callable[[Browser, str], None]) -> None:
+    """Run the demo from its beginning, with a browser."""
     command = [sys.executable, "-u", "-m", "navette", "demo", "--port", "0"]
     demo = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert demo.stderr is not None
@@ -154,10 +175,20 @@ def main() -> None:
             if (found := re.search(r"http://127\.0\.0\.1:\d+", line))
         )
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-            capture(address, folder)
+            capture(folder, lambda browser: work(browser, address))
     finally:
         demo.terminate()
         demo.wait()
+
+
+def main() -> None:
+    """Take all pictures, or those whose name has the argument."""
+    wanted = sys.argv[1] if len(sys.argv) > 1 else ""
+    if wanted in FILM.name:
+        with_demo(_film)
+    for shot in SHOTS:
+        if wanted in shot.name:
+            with_demo(partial(_take, shot=shot))
 
 
 if __name__ == "__main__":
