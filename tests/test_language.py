@@ -85,7 +85,7 @@ DIMENSIONLESS = (
     r"(progress|goal)_reward|(time|contact)_penalty",
     r"(clearance|map_cost)_weight|unknown_cost|(reverse|evasion)_factor|stale_periods",
     r"(switch|frontier)_gain|wheel_scale_error",
-    r"odometry_noise|(loop_)?min_(overlap|score)",  # shares
+    r"odometry_noise|(loop_)?min_(overlap|score)|max_contradicted",  # shares
     # Names of Nav2's AMCL, in metres, radians and seconds; and shares.
     r"transform_tolerance|alpha[1-5]|update_min_[da]|laser_\w+|sigma_hit|z_\w+",
     r"speed_base|speed_multiplier|independent_beams|pf_\w+|recovery_alpha_\w+|(lost|localized)_match",

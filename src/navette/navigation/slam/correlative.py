@@ -6,13 +6,14 @@ whatever the start.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import Pose2
+from navette.geometry import Pose2, angle_difference
 from navette.navigation.slam.scan_points import Points
 from navette.navigation.slam.score_grid import LARGEST, ScoreGrid
 
@@ -22,6 +23,10 @@ class SearchWindow(NamedTuple):
 
     distance_m: float
     angle_rad: float
+
+
+# Half the extent of one maximum of the score.
+_APART = SearchWindow(0.25, 0.06)
 
 
 class SearchResult(NamedTuple):
@@ -38,6 +43,8 @@ def search(
     window: SearchWindow,
     *,
     min_score: float = 0.0,
+    excluded: Sequence[Pose2] = (),
+    apart: SearchWindow = _APART,
 ) -> SearchResult | None:
     """Return the pose with the highest score in a window, if above ``min_score``.
 
@@ -50,6 +57,8 @@ def search(
         center: centre of the window in the grid's frame.
         window: half its extent.
         min_score: least score.
+        excluded: poses whose neighbourhood is left out, to find other maxima.
+        apart: half the extent of that neighbourhood.
     """
     if not len(points):
         return None
@@ -58,7 +67,23 @@ def search(
     turns = math.ceil(window.angle_rad / step)
     cells = math.ceil(window.distance_m / grid.resolution)
     best = np.array([-1.0, 0.0, 0.0, 0.0])
-    _search_kernel(grid, points, np.array(center), turns, step, cells, min_score, best)
+    # Relative to the centre, in cells and turns, with half their extents.
+    left_out = np.array(
+        [
+            (
+                (each.x - center.x) / grid.resolution,
+                (each.y - center.y) / grid.resolution,
+                angle_difference(each.yaw, center.yaw) / step,
+                apart.distance_m / grid.resolution,
+                apart.angle_rad / step,
+                math.tau / step,
+            )
+            for each in excluded
+        ]
+    ).reshape(-1, 6)
+    _search_kernel(
+        grid, points, np.array(center), turns, step, cells, min_score, left_out, best
+    )
     if best[0] < 0.0:
         return None
     pose = Pose2(
@@ -78,6 +103,7 @@ def _search_kernel(
     step: float,
     cells: int,
     min_score: float,
+    left_out: NDArray[np.float64],
     best: NDArray[np.float64],
 ) -> None:
     """Write score, columns, rows and turns of the best pose into ``best``."""
@@ -107,6 +133,8 @@ def _search_kernel(
             if bounds[depth] <= least:
                 continue
             if stack[depth, 3] == 0:
+                if _is_left_out(left_out, stack[depth]):
+                    continue
                 least = bounds[depth]
                 k = stack[depth, 0]
                 best[0] = least / (LARGEST * points.shape[0])
@@ -116,6 +144,20 @@ def _search_kernel(
                 depth = _branch(
                     grid, cols, rows, cells, int(least), stack, bounds, depth
                 )
+
+
+@kernel
+def _is_left_out(left_out: NDArray[np.float64], found: NDArray[np.int32]) -> bool:
+    turn = _turn_of(found[0])
+    for i in range(left_out.shape[0]):
+        x, y, yaw, distance, angle, whole = left_out[i]
+        away = abs(turn - yaw)
+        if (
+            math.hypot(found[1] - x, found[2] - y) <= distance
+            and min(away, whole - away) <= angle
+        ):
+            return True
+    return False
 
 
 @kernel

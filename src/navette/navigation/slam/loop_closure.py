@@ -20,7 +20,7 @@ from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.pose_graph import GraphEdge
 from navette.navigation.slam.refinement import Refined, refine
 from navette.navigation.slam.scan_graph import ScanChunk, ScanGraph
-from navette.navigation.slam.scan_points import Points
+from navette.navigation.slam.scan_points import Points, thinned
 from navette.navigation.slam.tracking import SIGMAS, LocalMap
 
 Matrix = NDArray[np.float64]
@@ -74,7 +74,7 @@ class LoopFinder:
     def find(self, query: ScanChunk, graph: ScanGraph) -> list[GraphEdge]:
         """Return the edges of the closures that are accepted now."""
         relative = graph.covariances_from(query.anchor)
-        sample = _thinned(chunk_points(query, graph), _SAMPLE)
+        sample = thinned(chunk_points(query, graph), _SAMPLE)
         accepted: list[GraphEdge] = []
         for target in self._near(query, graph, relative):
             closure = self._match(query, sample, target, graph, relative)
@@ -212,7 +212,3 @@ def _agree(one: GraphEdge, other: GraphEdge, graph: ScanGraph) -> bool:
 def _spread(covariance: Matrix) -> float:
     """Return three standard deviations of the position, m."""
     return SIGMAS * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
-
-
-def _thinned(points: Points, most: int) -> Points:
-    return np.ascontiguousarray(points[:: max(1, -(-len(points) // most))])

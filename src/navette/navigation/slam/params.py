@@ -104,6 +104,11 @@ class SlamParams(FrameParams):
     min_overlap: float = param(
         0.2, "least share of points with a correspondence", at_least=0.0, at_most=1.0
     )
+    max_contradicted: float = param(
+        0.35, "largest share of points, of the scan or of the map, that are where the "
+        "other one is free; the place is another one beyond it",
+        above=0.0, at_most=1.0,
+    )  # fmt: skip
 
     # Loop closure
     submap_scans: int = param(10, "key scans of a submap", at_least=2, at_most=200)

@@ -154,7 +154,7 @@ def sum_equations(
         ry = s * points[i, 0] + c * points[i, 1]
         nx = c * points[i, 2] - s * points[i, 3]
         ny = s * points[i, 2] + c * points[i, 3]
-        kind = _surface_near(surface, pose[0] + rx, pose[1] + ry, nx, ny, radius, found)
+        kind = surface_near(surface, pose[0] + rx, pose[1] + ry, nx, ny, radius, found)
         if kind == 0:
             continue
         count += 1
@@ -201,7 +201,7 @@ def _add(
 
 
 @kernel
-def _surface_near(
+def surface_near(
     surface: PointMap,
     x: float,
     y: float,

@@ -25,8 +25,9 @@ from navette.navigation.slam.refinement import PosePrior, Refined
 from navette.navigation.slam.relocation import locate
 from navette.navigation.slam.rendering import MapScan, render
 from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
-from navette.navigation.slam.scan_points import Points, scan_points
+from navette.navigation.slam.scan_points import scan_points
 from navette.navigation.slam.tracking import LocalMap, match
+from navette.navigation.slam.visibility import SensorView
 
 # Uncertainty of the first pose, which is the map's origin.
 _START = np.diag([1e-6, 1e-6, 1e-6])
@@ -38,6 +39,8 @@ _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
 _DOUBTFUL, _GAIN = 0.6, 0.15
 # Standard deviation of a predicted motion beyond which it replaces no odometry, m.
 _SURE_M = 0.3
+# Newest key scans that are searched for in the map by a robot that is lost.
+_SCOUTED = 10
 # Squared Mahalanobis distance of a closure from the graph up to which it fits anyway.
 _CLOSE = 1.0
 
@@ -74,6 +77,9 @@ class Slam:
     scans; after enough motion, keep it as a key scan; search for places seen before;
     optimise the pose graph where one is found.
 
+    A robot whose scans contradict the map has been moved: it is searched for in the
+    whole map, and what it sees meanwhile is not mapped.
+
     Args:
         params: noise, distances and limits.
         start: map_T_base at the first scan, roughly if there is a map already; None:
@@ -95,6 +101,10 @@ class Slam:
         self.is_mapping = is_mapping or not len(self.graph)
         self._known = len(self.graph)
         self._is_located = False
+        # Whether the newest scan contradicts the map where the robot should be.
+        self._is_contradicted = False
+        # A map of what the robot has seen since its place is unknown.
+        self._scout: Slam | None = None
         self._finder = LoopFinder(params)
         self._motion = MotionModel(params)
         self._track: list[_Tracked] = []
@@ -140,11 +150,14 @@ class Slam:
         key = KeyScan(stamp_ns, scan, base_T_sensor, points)
         motion = self._motion.step(stamp_ns, odom_T_base, yaw)
         if not self._is_located:
-            self._begin(key, motion)
+            self._begin(key, motion, odom_T_base, yaw)
             return self._estimate(stamp_ns, self._is_located)
-        matched = self._locate(points, motion)
+        matched = self._locate(key, motion)
         is_corrected = False
-        if self._is_far():
+        if self._is_contradicted:
+            if self.unmatched_in_a_row >= params.lost_scans:
+                self._lose()
+        elif self._is_far():
             if self.is_mapping:
                 self._keep(key, matched)
                 is_corrected = self._close_loops()
@@ -155,7 +168,8 @@ class Slam:
     def place(self, pose: Pose2) -> None:
         """Place the robot in a known map, roughly; the next scan finds it exactly."""
         if self._known:
-            self._start, self._is_located = pose, False
+            self._lose()
+            self._start = pose
 
     def refine(self) -> None:
         """Optimise all poses jointly, at the end of a run or before a map is saved."""
@@ -186,32 +200,66 @@ class Slam:
             for node, key in enumerate(self.graph.keys)
         ]
 
-    def _begin(self, key: KeyScan, motion: ScanMotion) -> None:
+    def _lose(self) -> None:
+        """Search for the robot from now on; all that is mapped is the known map."""
+        self._known = len(self.graph)
+        self._is_located, self._start, self._scout = False, None, None
+
+    def _begin(
+        self, key: KeyScan, motion: ScanMotion, odom: Pose2 | None, yaw: float | None
+    ) -> None:
         """Start a map at the first scan, or find the scan in the known map."""
         if not self._known:
             self._is_located = True
             self._keep(key, None)
             return
-        start = self._start
-        if start is None:
-            start = locate(self.graph, key.points, self.params)
+        self._pose = self._pose @ motion.pose
+        if self._start is None:
+            start = self._searched(key, odom, yaw)
         else:
-            self._start = start = start @ motion.pose
-        if start is None:
+            start = self._start = self._start @ motion.pose
+        matched = None if start is None else self._placed(key, start)
+        if matched is None:
             self._count_unmatched()
+            if self.unmatched_in_a_row >= self.params.lost_scans:
+                self._start = None  # it was wrong
             return
-        self._pose, self._covariance = start, _PLACED
-        self._rebuild_local_map()
-        matched = self._matched(key.points, ScanMotion(HERE, np.zeros((3, 3))))
-        if matched is None or matched.overlap < _DOUBTFUL:
-            self._count_unmatched()
-            return
-        self._is_located, self.unmatched_in_a_row = True, 0
+        self._is_located, self._is_contradicted = True, False
+        self._scout, self.unmatched_in_a_row = None, 0
         self._pose = matched.pose
         self._covariance = inverted(inverted(_PLACED) + matched.information)
         if self.is_mapping and len(self.graph) == self._known:
             self._join(key, matched)
         self._rebuild_local_map()
+
+    def _searched(
+        self, key: KeyScan, odom: Pose2 | None, yaw: float | None
+    ) -> Pose2 | None:
+        """Search the whole map for the newest scans, after each new key scan."""
+        scout = self._scout
+        if scout is None or scout.unmatched_in_a_row:
+            scout = self._scout = Slam(self.params)
+        before = len(scout.graph)
+        found = scout.add(
+            key.stamp_ns, key.scan, odom, base_T_sensor=key.base_T_sensor, yaw=yaw
+        )
+        count = len(scout.graph)
+        if count == before:
+            return None
+        newest = range(max(0, count - _SCOUTED), count)
+        points = scout.graph.points(newest, found.map_T_base)
+        return locate(self.graph, points, self.params)
+
+    def _placed(self, key: KeyScan, start: Pose2) -> Refined | None:
+        """Match a scan with the map around a start pose; None: it does not fit."""
+        before = self._pose, self._covariance
+        self._pose, self._covariance = start, _PLACED
+        self._rebuild_local_map()
+        matched = self._matched(key, ScanMotion(HERE, np.zeros((3, 3))))
+        self._pose, self._covariance = before
+        if matched is None or matched.overlap < _DOUBTFUL:
+            return None
+        return matched
 
     def _join(self, key: KeyScan, matched: Refined) -> None:
         """Connect the first key scan of a session to the known map."""
@@ -230,16 +278,18 @@ class Slam:
         self.unmatched += 1
         self.unmatched_in_a_row += 1
 
-    def _locate(self, points: Points, motion: ScanMotion) -> Refined | None:
+    def _locate(self, key: KeyScan, motion: ScanMotion) -> Refined | None:
         """Match a scan and move the pose; without a match, by the motion alone."""
         before = self._pose
-        moved, matched = motion, self._matched(points, motion)
+        moved, matched = motion, self._matched(key, motion)
+        is_contradicted = self._is_contradicted
         if matched is None or matched.overlap < _DOUBTFUL:
             steady = self._motion.steady()
-            other = self._matched(points, steady) if _is_sure(steady) else None
+            other = self._matched(key, steady) if _is_sure(steady) else None
             gain = _DOUBTFUL if matched is None else matched.overlap + _GAIN
             if other is not None and other.overlap > gain:
                 moved, matched = steady, other
+        self._is_contradicted = matched is None and is_contradicted
         covariance = moved_covariance(self._covariance, before, moved)
         since = self._since_key
         self._since_key = ScanMotion(
@@ -257,10 +307,15 @@ class Slam:
         self._motion.record(before.inverse() @ self._pose)
         return matched
 
-    def _matched(self, points: Points, motion: ScanMotion) -> Refined | None:
+    def _matched(self, key: KeyScan, motion: ScanMotion) -> Refined | None:
         covariance = moved_covariance(self._covariance, self._pose, motion)
         prior = PosePrior(self._pose @ motion.pose, inverted(covariance))
-        return match(self._local, points, prior, self.params)
+        found = match(self._local, key.points, prior, self.params)
+        pose = prior.pose if found is None else found.pose
+        placed = SensorView(key.scan, key.base_T_sensor)
+        share = self._local.contradiction(placed, key.points, pose)
+        self._is_contradicted = share > self.params.max_contradicted
+        return None if self._is_contradicted else found
 
     def _is_far(self) -> bool:
         """Whether the robot moved enough since the newest key scan."""
@@ -330,7 +385,14 @@ class Slam:
         points = self.graph.points(nodes)
         if not len(points):  # nothing was in range: no scan will match
             points = np.array([[self._pose.x, self._pose.y, 0.0, 0.0]])
-        self._local = LocalMap(points, self.params)
+        scans = [
+            SensorView(
+                self.graph.keys[node].scan,
+                self.graph.pose(node) @ self.graph.keys[node].base_T_sensor,
+            )
+            for node in nodes
+        ]
+        self._local = LocalMap(points, self.params, scans=scans)
 
     def _nearest_of(self, nodes: list[int]) -> int:
         return min(nodes, key=lambda k: self.graph.pose(k).distance_to(self._pose))

@@ -1,9 +1,12 @@
 """Match of a scan with the key scans around it."""
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 
-from navette.geometry import Pose2
+import numpy as np
+
+from navette.geometry import Pose2, wrap_angle
 from navette.navigation.slam.correlative import SearchWindow, search
 from navette.navigation.slam.motion import inverted
 from navette.navigation.slam.params import SlamParams
@@ -11,6 +14,12 @@ from navette.navigation.slam.point_map import make_point_map
 from navette.navigation.slam.refinement import PosePrior, Refined, refine
 from navette.navigation.slam.scan_points import Points
 from navette.navigation.slam.score_grid import ScoreGrid, make_score_grid
+from navette.navigation.slam.visibility import (
+    SensorView,
+    Views,
+    contradicted_share,
+    make_views,
+)
 
 SIGMAS = 3.0
 """Standard deviations that a search covers."""
@@ -20,6 +29,14 @@ _NEAR = 0.3
 _NEAR_RAD = 0.05
 _WIDEST_M = 5.0
 _LEAST_POINTS = 10
+# Share of a local map's points that are compared with a scan's free space.
+_EVERY = 4
+# Fit that a squared Mahalanobis distance of 1 from the prior costs.
+_UNLIKELY = 0.01
+# Maxima of the score that are refined.
+_MAXIMA = 3
+# Fit that a pose far from the prior must gain.
+_GAIN = 0.02
 
 
 class LocalMap:
@@ -29,18 +46,49 @@ class LocalMap:
         points: (N, 4), N > 0.
         params: radius of correspondence, cell of the search.
         levels: levels of the search grid, for windows of up to 2^levels cells.
+        scans: the scans of the points, to find contradictions.
     """
 
-    def __init__(self, points: Points, params: SlamParams, levels: int = 4) -> None:
+    def __init__(
+        self,
+        points: Points,
+        params: SlamParams,
+        levels: int = 4,
+        scans: Sequence[SensorView] = (),
+    ) -> None:
         self.surface = make_point_map(points, params.match_radius_m)
         self._points = points
         self._resolution_m = params.search_resolution_m
         self._levels = levels
+        self._scans = scans
 
     @cached_property
     def grid(self) -> ScoreGrid:
         """The likelihood of a hit by position; made when a search needs it."""
         return make_score_grid(self._points, self._resolution_m, self._levels)
+
+    @cached_property
+    def views(self) -> Views:
+        """The free space that the scans have seen."""
+        return make_views(self._scans)
+
+    def contradiction(self, placed: SensorView, points: Points, pose: Pose2) -> float:
+        """Return the share of points that contradict a scan at ``pose``, 0 to 1.
+
+        Either the scan has surfaces where the map is free, or the reverse.
+
+        Args:
+            placed: the scan, with the pose of its sensor on the robot.
+            points: (N, 4) of the scan in the base frame.
+            pose: of the base in the map's frame.
+        """
+        if not len(points):
+            return 0.0
+        new = contradicted_share(self.surface, self.views, points, pose)
+        own = make_point_map(points, self.surface.cell_m)
+        known = np.ascontiguousarray(self._points[::_EVERY])
+        old = contradicted_share(own, make_views([placed]), known, pose.inverse())
+        return max(new, old)
 
 
 def match(
@@ -53,16 +101,39 @@ def match(
     """
     if len(points) < _LEAST_POINTS:
         return None
+    best = _refined(local, points, prior.pose, prior, params)
     covariance = inverted(prior.information)
     spread = SIGMAS * math.sqrt(max(covariance[0, 0], covariance[1, 1]))
     turn = SIGMAS * math.sqrt(covariance[2, 2])
-    start: Pose2 = prior.pose
     if spread > _NEAR * params.match_radius_m or turn > _NEAR_RAD:
         window = SearchWindow(min(spread, _WIDEST_M), min(turn, math.pi))
-        found = search(local.grid, points, prior.pose, window)
-        if found is not None:
-            start = found.pose
-    refined = refine(
+        starts: list[Pose2] = []
+        for _ in range(_MAXIMA):
+            found = search(local.grid, points, prior.pose, window, excluded=starts)
+            if found is None:
+                break
+            starts.append(found.pose)
+            other = _refined(local, points, found.pose, prior, params)
+            if _fit(other, prior, params) > _fit(best, prior, params) + _GAIN:
+                best = other
+    return best if best.overlap >= params.min_overlap else None
+
+
+def _refined(
+    local: LocalMap, points: Points, start: Pose2, prior: PosePrior, params: SlamParams
+) -> Refined:
+    return refine(
         local.surface, points, start, noise_m=params.match_noise_m, prior=prior
     )
-    return refined if refined.overlap >= params.min_overlap else None
+
+
+def _fit(refined: Refined, prior: PosePrior, params: SlamParams) -> float:
+    """Return the share of points with a correspondence.
+
+    Less where they are far off, and where the pose is far from the prior.
+    """
+    away = np.array(refined.pose) - np.array(prior.pose)
+    away[2] = wrap_angle(away[2])
+    unlikely = float(away @ prior.information @ away)
+    error = refined.error_m / params.match_noise_m
+    return refined.overlap / (1.0 + error * error) - _UNLIKELY * unlikely

@@ -3,6 +3,7 @@
 import numpy as np
 
 from navette.geometry import Pose2
+from navette.navigation.slam.correlative import SearchWindow, search
 from navette.navigation.slam.loop_closure import slides
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.refinement import refine
@@ -33,7 +34,9 @@ def is_ambiguous(walls: Segments, start: Pose2) -> bool:
         local.surface, sample, Pose2(0.0, 0.0, 0.0), noise_m=PARAMS.match_noise_m
     )
     assert refined.overlap > 0.9
-    return slides(local, sample, refined, score=0.8)
+    found = search(local.grid, sample, refined.pose, SearchWindow(0.2, 0.02))
+    assert found is not None
+    return slides(local, sample, refined, found.score)
 
 
 def test_a_bare_corridor_fits_in_many_places() -> None:

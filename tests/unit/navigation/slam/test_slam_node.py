@@ -212,7 +212,7 @@ def test_an_initial_pose_places_the_robot_in_a_known_map(tmp_path: Path) -> None
         )
     with GraphHarness() as graph:
         known = str(tmp_path / "office.slam")
-        start(graph, known_map=known, start_x_m=40.0, lost_scans=3)
+        start(graph, known_map=known, start_x_m=40.0, lost_scans=6)
         found = graph.collect("/pose", PoseWithCovarianceStamped)
         status = graph.collect(
             "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True

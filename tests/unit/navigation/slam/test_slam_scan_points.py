@@ -8,7 +8,7 @@ import pytest
 from navette.geometry import Pose2
 from navette.navigation.grids import PlanarScan
 from navette.navigation.slam.scan_points import moved_points, scan_points
-from slam_office import office, scan_at
+from slam_office import box, office, scan_at
 
 HERE = Pose2(0.0, 0.0, 0.0)
 
@@ -54,4 +54,18 @@ def test_clutter_has_no_normals() -> None:
     ranges = 3.0 + 0.4 * np.random.default_rng(0).normal(size=360)
     scan = PlanarScan(ranges.astype(np.float32), 0.0, math.tau / 360, 0.05, 10.0)
     points = points_of(scan)
-    assert (np.hypot(points[:, 2], points[:, 3]) < 0.5).mean() > 0.8
+    assert (np.hypot(points[:, 2], points[:, 3]) > 0.5).sum() < 0.2 * 360
+
+
+def test_the_ends_of_a_scan_of_a_bare_corridor_are_left_out() -> None:
+    walls = np.array([(-99.0, -1.0, 99.0, -1.0), (-99.0, 1.0, 99.0, 1.0)])
+    points = points_of(scan_at(walls, Pose2(0.0, 0.0, 0.0), range_m=10.0))
+    assert len(points) > 100
+    assert (np.abs(points[:, 3]) > 0.99).all()
+
+
+def test_a_thin_leg_is_kept() -> None:
+    walls = np.array([*box(-3.0, -3.0, 6.0, 6.0), *box(1.5, 0.0, 0.03, 0.03)])
+    points = points_of(scan_at(walls, Pose2(0.0, 0.0, 0.0)))
+    legs = np.linalg.norm(points[:, :2] - (1.5, 0.015), axis=1) < 0.05
+    assert legs.any()
