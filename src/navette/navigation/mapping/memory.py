@@ -34,6 +34,7 @@ from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.vanished import (
     VanishedCells,
+    behind,
     have_echo,
     middles,
     possible_directions,
@@ -337,7 +338,8 @@ class MapMemory:
             costmap.hits,
             costmap.sensor,
             self.spec.resolution,
-            _is_free(costmap, middle),
+            _is_free(costmap, middle)
+            & _is_free(costmap, behind(middle, costmap.sensor)),
         )
         gone = self._vanished.update(lethal, possible)
         self._cells[gone[:, 0], gone[:, 1]] = FREE

@@ -96,6 +96,16 @@ def middles(points: Points, which: NDArray[np.int64], count: int) -> Points:
     )
 
 
+def behind(points: Points, sensor: tuple[float, float]) -> Points:
+    """Return the points (M, 2) moved away from the sensor, to where a beam ends.
+
+    At the end of a scanner's range, an obstacle that is a little further has no echo.
+    """
+    off = points - sensor
+    away = np.maximum(np.hypot(*off.T), 1e-6)
+    return np.asarray(points + off * (_BEYOND_M / away)[:, None])
+
+
 def have_echo(points: Points, hits: Points) -> Flags:
     """Return (M,) whether an echo may be of the obstacle at each point."""
     if len(hits) == 0 or len(points) == 0:
@@ -161,8 +171,8 @@ def possible_directions(
         hits: (N, 2) echoes, in the map, m.
         sensor: x, y in the map, m.
         resolution_m: edge of a cell of the map.
-        crossed: (M,) whether beams crossed the point's cell; one without an echo proves
-            nothing elsewhere.
+        crossed: (M,) whether beams crossed the cells of the point and :func:`behind`
+            it; one without an echo proves nothing elsewhere.
     """
     possible = np.full(len(points), _ALL, np.uint32)
     if len(hits) < 2 or len(points) == 0:

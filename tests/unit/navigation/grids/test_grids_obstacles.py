@@ -9,11 +9,16 @@ from navette.navigation.grids import (
     LETHAL,
     UNKNOWN,
     GridSpec,
+    Layer,
     cell_points,
     mark_points,
     obstacle_points,
 )
-from navette.navigation.grids.obstacles import _placed_within, _unless_seen
+from navette.navigation.grids.obstacles import (
+    _placed_within,
+    _seen_also,
+    _unless_seen,
+)
 from navette.navigation.grids.sub_cells import CellMarks
 
 SEEDS = st.integers(0, 10_000)
@@ -95,3 +100,35 @@ def test_points_of_a_few_cells_are_those_of_the_whole_grid(
     plain = cell_points(masks[tuple(cells.T)], spec, cells, 0.003)
     found = CellMarks.of(spec, hits).points(spec, spec.centers_of(cells), 0.003)
     np.testing.assert_allclose(found, plain, atol=1e-9)
+
+
+def test_cells_that_a_map_has_shown_stay_seen() -> None:
+    """Clearing the map near the robot must not make known space unseen."""
+    spec = GridSpec(0.1, 6, 4, Pose2(0.0, 0.0, 0.0))
+    before = np.zeros(spec.shape, np.int8)
+    before[0] = UNKNOWN
+    now = np.full(spec.shape, UNKNOWN, np.int8)
+    now[1, 2] = LETHAL
+    seen = _seen_also(Layer(now, spec), Layer(before, spec))
+    assert (seen.cells[0] == UNKNOWN).all()
+    assert (seen.cells[1:] != UNKNOWN).all()
+    assert seen.cells[1, 2] == LETHAL, "what is known now counts"
+    assert (now[2:] == UNKNOWN).all(), "the map itself is not changed"
+
+
+def test_a_map_that_shows_no_less_is_used_as_it_is() -> None:
+    spec = GridSpec(0.1, 6, 4, Pose2(0.0, 0.0, 0.0))
+    first = Layer(np.full(spec.shape, UNKNOWN, np.int8), spec)
+    more = Layer(np.zeros(spec.shape, np.int8), spec)
+    assert _seen_also(first, None) is first
+    assert _seen_also(more, first) is more
+
+
+def test_a_map_that_grew_keeps_what_the_smaller_one_has_shown() -> None:
+    small = GridSpec(0.1, 6, 4, Pose2(0.0, 0.0, 0.0))
+    large = GridSpec(0.1, 26, 24, Pose2(-1.0, -1.0, 0.0))
+    now = Layer(np.full(large.shape, UNKNOWN, np.int8), large)
+    seen = _seen_also(now, Layer(np.zeros(small.shape, np.int8), small))
+    inside = seen.cells[10:14, 10:16]
+    assert (inside != UNKNOWN).all()
+    assert (seen.cells != UNKNOWN).sum() == inside.size

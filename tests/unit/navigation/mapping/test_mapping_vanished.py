@@ -111,3 +111,20 @@ def test_beams_without_an_echo_are_between_the_others() -> None:
 def test_an_echo_beside_another_post_does_not_free_its_cell() -> None:
     near = have_echo(np.array([(2.0, 0.0), (2.0, 0.2)]), np.array([(2.0, 0.28)]))
     assert near.tolist() == [False, True]
+
+
+def test_a_post_at_the_end_of_the_range_is_kept_without_an_echo() -> None:
+    memory = MapMemory(MapMemoryParams(resolution_m=0.05, size_m=12.0))
+    posts = np.array([(3.5, 0.0, 0.045), (1.5, 1.5, 0.1)])
+    turns = np.random.default_rng(1).uniform(-0.02, 0.02, 60).tolist()
+    for k, turn in enumerate(turns):
+        x = 0.0 if k < 5 else -0.046 - 0.0005 * k
+        at = Pose2(x, 0.0, turn)
+        ranges = ranges_to(posts, at)
+        ranges[ranges > 3.5] = np.inf
+        scan = PlanarScan(ranges.astype(np.float32), -np.pi, np.pi / 360, 0.05, 3.5)
+        there = placed(COSTMAP.spec, at)
+        hits = at.apply(COSTMAP.hits(scan))
+        cells = COSTMAP.build(scan)
+        memory.fuse(PlacedCostmap(cells, there, (x, 0.0), at, 0, hits=hits))
+        assert lethal_near(memory, 3.5, 0.0, 0.1)
