@@ -114,6 +114,8 @@ class ScanCostmap:
         scan = PlanarScan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0)
         self.build(scan)
         self.hits(scan)
+        many_lethal = np.full((1, 1), LETHAL, np.int8)
+        inflate(many_lethal, self._table, raise_unknown=False)
 
     def _margins(
         self, scan: PlanarScan, directions: NDArray[np.float64]

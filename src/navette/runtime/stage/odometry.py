@@ -313,6 +313,8 @@ def _velocity_of_base(
 
     v_base = v_child + ω × p (rigid body), rotated into the base's axes.
     """
+    if child_T_base is _HERE:
+        return (vx, omega), vy
     x, y, yaw = child_T_base
     along, across = vx - omega * y, vy + omega * x
     c, s = math.cos(yaw), math.sin(yaw)
