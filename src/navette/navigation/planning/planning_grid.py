@@ -131,7 +131,7 @@ class PlanningGrid:
     @cached_property
     def exact_obstacles(self) -> ObstacleGrid:
         """The lethal cells with the points in them, for exact clearances."""
-        masks = np.zeros(self.spec.shape, np.uint64)
+        masks = sparse_zeros(self.spec.shape, np.uint64)
         mark_points(masks, self.spec, self.hits)
         return make_obstacles(self.obstacles, self.spec, masks)
 
