@@ -111,7 +111,9 @@ def _contains(folder: Path, package: str) -> bool:
     return ElementTree.parse(manifest).findtext("name") == package
 
 
-def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome:
+def run_suite(
+    name: str, folder: Path, search: list[Path], packages: list[Path]
+) -> Outcome:
     """Run the tests of one folder in a pytest of their own.
 
     Args:
@@ -121,11 +123,13 @@ def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome
     with tempfile.TemporaryDirectory(prefix="navette_upstream_") as scratch:
         report, prefix = Path(scratch) / "report.xml", Path(scratch) / "install"
         install(packages, prefix)
+        # launch_ros starts nodes of packages; launch_testing needs installed files.
+        sources = packages if name == "launch_ros" else []
         command = [
             *(sys.executable, "-m", "pytest", str(folder), f"--junitxml={report}"),
             *("-p", "navette.ros2.names.pytest_plugin", "-p", "no:cacheprovider"),
             *("-p", "no:xdist"),
-            *("--noconftest", "-o", "addopts=", "-q", "--tb=short"),
+            *("-o", "addopts=", "-q", "--tb=short", f"--confcutdir={folder.parent}"),
             *("--continue-on-collection-errors", f"--timeout={TEST_TIMEOUT_S}"),
             f"--rootdir={folder}",
             *(f"--ignore-glob=*test_{linter}.py" for linter in LINTERS),
@@ -138,7 +142,7 @@ def run_suite(folder: Path, search: list[Path], packages: list[Path]) -> Outcome
                 "PYTHONPATH": os.pathsep.join(
                     map(str, [folder.parent, STAND_INS, *search])
                 ),
-                "NAVETTE_PATH": os.pathsep.join(map(str, packages)),
+                "NAVETTE_PATH": os.pathsep.join(map(str, sources)),
                 "AMENT_PREFIX_PATH": str(prefix),
                 "PATH": f"{prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
                 "PYTHONDONTWRITEBYTECODE": "1",
@@ -204,7 +208,7 @@ def main() -> int:
         if options.suite and name not in options.suite:
             continue
         found = [each for each in extra if each.is_dir()]
-        outcome = run_suite(folder, found, folders)
+        outcome = run_suite(name, folder, found, folders)
         differences += report_suite(name, outcome, reasons.get(name, {}))
         tracebacks += [f"=== {test}\n{text}" for test, text in outcome.failed.items()]
     if options.failures:

@@ -66,16 +66,7 @@ from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
 from navette.runtime.service import Service
 from navette.runtime.signals import SignalHandlerOptions
-from navette.runtime.stage.params import declare_params
-from navette.runtime.stage.stage_node import Input, Output, StageNode
-from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.subscription import MessageInfo, Subscription
-from navette.runtime.tf import (
-    Buffer,
-    StaticTransformBroadcaster,
-    TransformBroadcaster,
-    TransformListener,
-)
 from navette.runtime.time import (
     ClockType,
     Duration,
@@ -101,6 +92,15 @@ if TYPE_CHECKING:
     from navette.runtime.parameter_client import AsyncParameterClient
     from navette.runtime.parameter_event_handler import ParameterEventHandler
     from navette.runtime.serialization import deserialize_message, serialize_message
+    from navette.runtime.stage.params import declare_params
+    from navette.runtime.stage.stage_node import Input, Output, StageNode
+    from navette.runtime.stage.status import StatusReporter, status_output
+    from navette.runtime.tf import (
+        Buffer,
+        StaticTransformBroadcaster,
+        TransformBroadcaster,
+        TransformListener,
+    )
 
 __all__ = [
     # life cycle

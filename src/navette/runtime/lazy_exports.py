@@ -6,6 +6,16 @@ _ACTION = frozenset({"ActionClient", "ActionServer", "CancelResponse", "GoalResp
 _LIFECYCLE = frozenset(
     {"LifecycleNode", "LifecyclePublisher", "TransitionCallbackReturn"}
 )
+_STAGE_NODE = frozenset({"Input", "Output", "StageNode"})
+_STATUS = frozenset({"StatusReporter", "status_output"})
+_TF = frozenset(
+    {
+        "Buffer",
+        "StaticTransformBroadcaster",
+        "TransformBroadcaster",
+        "TransformListener",
+    }
+)
 _SERIALIZATION = frozenset({"deserialize_message", "serialize_message"})
 
 
@@ -22,6 +32,14 @@ def find(name: str) -> Any:
         from navette.runtime import lifecycle as module
     elif name in _SERIALIZATION:
         from navette.runtime import serialization as module
+    elif name in _TF:
+        from navette.runtime import tf as module
+    elif name in _STAGE_NODE:
+        from navette.runtime.stage import stage_node as module
+    elif name in _STATUS:
+        from navette.runtime.stage import status as module
+    elif name == "declare_params":
+        from navette.runtime.stage import params as module
     elif name == "AsyncParameterClient":
         from navette.runtime import parameter_client as module
     elif name == "ParameterEventHandler":
