@@ -208,6 +208,7 @@ class Loop:
     """One implementation with an echo in another process; a call is one round trip."""
 
     children: ClassVar[list[subprocess.Popen[str]]] = []
+    dataflows: ClassVar[ExitStack] = ExitStack()
 
     def __init__(self, peer: str, size: int, stack: ExitStack) -> None:
         ends = [f"tcp/127.0.0.1:{free_port()}" for _ in range(2)]
@@ -217,7 +218,7 @@ class Loop:
         }
         os.environ.update(common, BENCH_LISTEN=ends[0], BENCH_CONNECT=ends[1])
         if peer == "dora-rs":
-            start_dataflow(size, stack)
+            start_dataflow(size, self.dataflows)
         # Navette's router serves the peer as well.
         router = None
         if peer == "zenoh-ros2-sdk":
@@ -303,4 +304,5 @@ if __name__ == "__main__":
             sys.stdout.flush()
             for child in Loop.children:
                 child.kill()
+            Loop.dataflows.close()
             os._exit(0)  # the peer's session does not always end when it is closed
