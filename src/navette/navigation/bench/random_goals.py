@@ -44,6 +44,7 @@ class RandomGoal:
     Attributes:
         scene: the world.
         obstacles: convex outlines (N, 2) of all obstacles, counter-clockwise.
+        body: outline (N, 2) of the robot, base frame, counter-clockwise.
         start: pose of the robot.
         goal: position (m).
         kinds: kinds of the world, the start and the goal.
@@ -51,6 +52,7 @@ class RandomGoal:
 
     scene: Scene
     obstacles: list[Points]
+    body: Points
     start: Pose2
     goal: tuple[float, float]
     kinds: tuple[str, str, str]
@@ -132,7 +134,7 @@ def random_goal(robot: str, seed: int) -> RandomGoal:
     goal, goal_kind = place.goal()
     kinds = kind, start_kind, goal_kind
     scene = plot.scene(f"{kind}-{robot}-{seed}")
-    return RandomGoal(scene, outlines, start, goal, kinds)
+    return RandomGoal(scene, outlines, body, start, goal, kinds)
 
 
 @dataclass(frozen=True)

@@ -9,21 +9,73 @@ them. This is independent of the planner: no map, no scan, no search.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import ACKERMANN, OMNI, Pose2
+from navette.geometry import OMNI, Pose2
 from navette.navigation.grids import GridSpec
 
 HEADINGS = 72
 # Cells along the longer edge of the world.
 _CELLS = 360
 
+# Clearance of a body that certainly fits, and of a start that is one.
+_SURE_M, _START_M = 0.06, 0.02
+
 Open = NDArray[np.bool_]
 Points = NDArray[np.float64]
+
+
+class Reach(StrEnum):
+    """What exact geometry says about a goal."""
+
+    SURE = "sure"
+    """The body gets there with 6 cm to every obstacle."""
+
+    UNSURE = "unsure"
+    ENCLOSED = "enclosed"
+    """The body fits at the goal, and certainly does not get there."""
+
+    BLOCKED = "blocked"
+    """The body fits nowhere within the tolerance."""
+
+
+def goal_reach(
+    obstacles: Sequence[Points],
+    body: Points,
+    start: Pose2,
+    goal: tuple[float, float],
+    *,
+    drive: str,
+    tolerance_m: float,
+) -> Reach:
+    """Return whether a body reaches a goal (m, map) within the tolerance.
+
+    What is certain holds for every motion of the body; what is sure is a path on which
+    a drive moves along its heading and turns in place.
+    """
+    radius = float(np.hypot(*body.T).max())
+    ends = np.array([(start.x, start.y), goal])
+    world = WorldGeometry.around(obstacles, body, ends, 1.5 * radius)
+    at, size = world.index_of(start), world.spec.resolution
+    loose = world.open_poses(-world.slack_m)
+    loose[at] = True
+    near = world.disc(goal, tolerance_m + size)
+    if not loose[:, near].any():
+        return Reach.BLOCKED
+    if not connected(loose, at, sideways=True)[:, near].any():
+        return Reach.ENCLOSED
+    roomy = world.open_poses(_SURE_M)
+    beside = world.disc((start.x, start.y), radius)
+    roomy[:, beside] |= world.open_poses(_START_M)[:, beside]
+    roomy[at] = True
+    reached = connected(roomy, at, sideways=drive == OMNI)
+    inner = world.disc(goal, max(0.5 * tolerance_m, size))
+    return Reach.SURE if reached[:, inner].any() else Reach.UNSURE
 
 
 @dataclass(frozen=True)
@@ -109,53 +161,27 @@ def _normals(outline: Points) -> Points:
     return normals
 
 
-def connected(
-    opened: Open, start: tuple[int, int, int], drive: str, radius_cells: float = 0.0
-) -> Open:
-    """Return (HEADINGS, H, W) the poses that a drive connects with a start.
+def connected(opened: Open, start: tuple[int, int, int], *, sideways: bool) -> Open:
+    """Return (HEADINGS, H, W) the poses that are connected with a start.
 
-    Differential drives roll along their heading and turn in place; Ackermann drives
-    turn no more than by a heading step in ``radius_cells`` of that angle; both go in
-    reverse, too.
+    Without ``sideways`` the body moves along its heading, forward and in reverse.
     """
     reached = np.zeros_like(opened)
     if opened[start]:
-        moves = _moves(drive, radius_cells)
-        _flood(opened, reached, start, moves)
+        _flood(opened, reached, start, _moves(sideways=sideways))
     return reached
 
 
-def _moves(drive: str, radius_cells: float) -> NDArray[np.int64]:
+def _moves(*, sideways: bool) -> NDArray[np.int64]:
     """Return (HEADINGS, M, 3) the steps from a pose: heading, row, column."""
+    steps = [(i, j) for i in range(-2, 3) for j in range(-2, 3) if math.gcd(i, j) == 1]
     table = []
     for k in range(HEADINGS):
         yaw = math.tau * k / HEADINGS
-        moves: set[tuple[int, int, int]] = set()
-        if drive != ACKERMANN:
-            moves |= {(1, 0, 0), (-1, 0, 0)}
-        if drive == OMNI:
-            moves |= {(0, i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j}
-        elif drive == ACKERMANN:
-            length = radius_cells * math.tau / HEADINGS
-            for sign in (1.0, -1.0):
-                for turn in (-1, 0, 1):
-                    at = yaw + turn * math.pi / HEADINGS
-                    reach = sign * max(length, 2.0)
-                    moves.add(
-                        (
-                            turn,
-                            round(reach * math.sin(at)),
-                            round(reach * math.cos(at)),
-                        )
-                    )
-        else:
-            moves |= {
-                (0, i, j)
-                for i in (-2, -1, 0, 1, 2)
-                for j in (-2, -1, 0, 1, 2)
-                if math.gcd(i, j) == 1 and _is_along(yaw, math.atan2(i, j))
-            }
-        table.append(sorted(moves))
+        along = [
+            (0, i, j) for i, j in steps if sideways or _is_along(yaw, math.atan2(i, j))
+        ]
+        table.append([(1, 0, 0), (-1, 0, 0), *along])
     most = max(map(len, table))
     filled = [moves + [(0, 0, 0)] * (most - len(moves)) for moves in table]
     return np.array(filled, np.int64)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 
 from navette.geometry import OMNI, Pose2
-from navette.navigation.planning.detour import DetourPlanner, Target
+from navette.navigation.planning.detour import DetourPlanner, DetourResult, Target
 from navette.navigation.planning.fitted_route import RouteFitter
 from navette.navigation.planning.goals import nearest_reachable
 from navette.navigation.planning.outcome import Outcome
@@ -52,8 +52,7 @@ class MarginPlanner:
         detour = self._detours(grid, start, max_expansions).plan(start, target, route)
         poses = fitting if detour.poses is None else detour.poses
         if poses is None:
-            why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
-            return Plan(why, expansions=detour.expansions)
+            return Plan(_why_none(detour), expansions=detour.expansions)
         return self.planned(goal, poses, margin_m, detour.expansions)
 
     def plan_on_grid(
@@ -103,6 +102,14 @@ class MarginPlanner:
         params = replace(self.params, max_expansions=max_expansions)
         unseen = self.map.unseen(self.put_down_at or start)
         return DetourPlanner(grid, self.map.body, params, self.router, unseen)
+
+
+def _why_none(detour: DetourResult) -> Outcome:
+    """Return why no detour was found."""
+    if detour.exhausted:
+        return Outcome.SEARCH_LIMIT
+    # Nothing but the start was expanded: no motion from there is free.
+    return Outcome.START_BLOCKED if detour.expansions == 1 else Outcome.NO_PATH
 
 
 def path_end_reach_m(params: PlannerParams) -> float:

@@ -28,6 +28,7 @@ from navette.navigation.planning.planning_grid import (
     without_obstacles_in,
 )
 from navette.navigation.planning.planning_map import PlanningMap
+from navette.navigation.planning.traversal import LETHAL
 
 
 class PreparedMap:
@@ -36,14 +37,26 @@ class PreparedMap:
     Attributes:
         footprint: outline of the body.
         hits: (N, 2), map frame, m: where beams ended within lethal cells.
+
+    Args:
+        params: parameters of the planner.
+        body: instead of that of the parameters.
+        within: (H, W) cells of the only map outside of which the base cannot be.
     """
 
-    def __init__(self, params: PlannerParams, body: BodyShape | None = None) -> None:
+    def __init__(
+        self,
+        params: PlannerParams,
+        body: BodyShape | None = None,
+        *,
+        within: NDArray[np.bool_] | None = None,
+    ) -> None:
         self.footprint = Footprint.from_flat(params.footprint_m)
         self.hits = NO_HITS
         self._params = params
         self._map: PlanningMap | None = None
         self._given_body = self._body = body
+        self._within = within
         self._some_cost_fell = True
         self._grids: dict[float, PlanningGrid] = {}
         self._moving = NO_DISCS
@@ -181,7 +194,10 @@ class PreparedMap:
         grid = without_obstacles_in(grid, self.cells, start, self.body)
         cell = grid.cell_of(start.x, start.y)
         assert cell is not None, "the start lies in the map"
-        return open_at(grid, cell, self.body)
+        grid = open_at(grid, cell, self.body)
+        if self._within is None:
+            return grid
+        return replace(grid, cost=np.where(self._within, grid.cost, np.uint8(LETHAL)))
 
     def unseen(self, put_down_at: Pose2) -> NDArray[np.uint8]:
         """Return (H, W) 1 for the cells that the body does not enter in reverse.

@@ -7,6 +7,7 @@ gaps with a part of the budget, and search with all of it only where a path may 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navette.geometry import Pose2
 from navette.navigation.grids import UNKNOWN, exact_clearances, make_outline
@@ -78,9 +79,12 @@ class TightPlanner:
         found = self._search(body.through_gaps(slack), margin, quick)
         if found.outcome.has_path:
             return found
-        # The long search runs only if a path of exact poses at cell centres may exist.
-        if self.why_impossible(0.0) is None:
-            found = self._search(body.loose(slack), margin, self.params.max_expansions)
+        # The long search runs only if a path of exact poses at cell centres may exist,
+        # and only there: a gap that the body cannot pass would attract it.
+        reached, why = self._reached(0.0)
+        if why is None:
+            budget = self.params.max_expansions
+            found = self._search(body.loose(slack), margin, budget, reached)
         if found.outcome is not Outcome.SEARCH_LIMIT:
             return found
         why = self.why_impossible(margin)
@@ -92,6 +96,12 @@ class TightPlanner:
         A goal lies inside an obstacle if obstacles enclose all space around it that the
         body could move in, and no beam has measured any of it.
         """
+        return self._reached(margin_m)[1]
+
+    def _reached(
+        self, margin_m: float | None
+    ) -> tuple[NDArray[np.bool_], Outcome | None]:
+        """Return (H, W) where the body can be; see :meth:`why_impossible`."""
         occupancy, spec = self._closer.occupancy, self._closer.spec
         lethal = occupancy >= self.params.lethal_cost
         space = BodySpace(
@@ -99,13 +109,13 @@ class TightPlanner:
         )
         goal_xy = self.goal.x, self.goal.y
         cells, _ = cells_near(spec, goal_xy, path_end_reach_m(self.params))
-        there = tuple(cells.T)
-        if space.reached_from(np.array([space.start]))[there].any():
-            return None
+        reached = space.reached_from(np.array([space.start]))
+        if reached[tuple(cells.T)].any():
+            return reached, None
         around = space.reached_from(cells)
         is_seen = (occupancy[around] != UNKNOWN).any()
         rim = around[[0, -1]].any() or around[:, [0, -1]].any()
-        return Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
+        return reached, Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
 
     def _margin(self) -> float:
         """Return the tight margin, or less in a passage where the robot has less."""
@@ -116,8 +126,14 @@ class TightPlanner:
         here = float(exact_clearances(obstacles, outline, pose, tight + _SWAY_M)[0])
         return min(tight, max(here - _SWAY_M, _LEAST_M))
 
-    def _search(self, body: BodyShape, margin_m: float, max_expansions: int) -> Plan:
-        prepared = PreparedMap(self.params, body)
+    def _search(
+        self,
+        body: BodyShape,
+        margin_m: float,
+        max_expansions: int,
+        within: NDArray[np.bool_] | None = None,
+    ) -> Plan:
+        prepared = PreparedMap(self.params, body, within=within)
         prepared.receive(self._closer.occupancy, self._closer.spec, self._map.hits)
         router = GridRouter(self.params, centres=True)
         planner = MarginPlanner(self.params, prepared, router, self._put_down_at)

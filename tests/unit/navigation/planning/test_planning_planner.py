@@ -317,3 +317,19 @@ def test_beside_the_end_of_a_wall_the_path_leaves_it_before_it_turns() -> None:
     clearance = exact_clearances(made.grid().exact_obstacles, outline, plan.poses, 0.5)
     assert plan.outcome.has_path
     assert clearance[1:].min() > clearance[0] + 0.003
+
+
+def test_a_car_before_a_wall_with_nothing_seen_behind_is_blocked_at_its_start() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4.5, 4.7), (1, 5))
+    occupancy[:, :38] = -1  # no beam has seen what is behind
+    car = PlannerParams(
+        drive="ackermann",
+        min_turning_radius_m=0.8,
+        footprint_m=(0.45, 0.14, -0.13, 0.14, -0.13, -0.14, 0.45, -0.14),
+    )
+    plan = planner(occupancy, spec, car).plan(Pose2(4.0, 3.0, 0.0), Goal(7.0, 3.0))
+    assert plan.outcome is Outcome.START_BLOCKED
+    occupancy[:, :38] = 0
+    plan = planner(occupancy, spec, car).plan(Pose2(4.0, 3.0, 0.0), Goal(7.0, 3.0))
+    assert plan.outcome.has_path
