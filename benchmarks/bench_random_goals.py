@@ -1,7 +1,7 @@
 """Random worlds with any start and any goal: is every end of a drive the right one?
 
 ``python benchmarks/bench_random_goals.py --seeds 0-49`` drives all robots and prints a
-table of the ends against what exact geometry says about the goal. Exit code 1: a
+table of the ends against what exact geometry gives for the goal. Exit code 1: a
 contact, or a wrong end.
 """
 
@@ -76,7 +76,7 @@ def run(case: tuple[str, int]) -> End:
         drive=params.drive, tolerance_m=params.goal_tolerance_m,
     )  # fmt: skip
     if params.drive == ACKERMANN and truth is Reach.SURE:
-        truth = Reach.UNSURE  # the flood does not know how sharply a car steers
+        truth = Reach.UNSURE  # the flood turns in place, a car does not
     return End(robot, seed, drive, summary.goals[0].result, summary.contacts, truth)
 
 

@@ -31,7 +31,7 @@ Points = NDArray[np.float64]
 
 
 class Reach(StrEnum):
-    """What exact geometry says about a goal."""
+    """Result of exact geometry for a goal."""
 
     SURE = "sure"
     """The body gets there with 6 cm to every obstacle."""
