@@ -29,7 +29,8 @@ class TrialOptions:
         Option(
             "--worlds",
             metavar="N,…",
-            help="Worlds by number, as 1,4,7-9. Default: all; of generated ones 0-9.",
+            help="Worlds by number, as 1,4,7-9; of the course its runs. Default: all;"
+            " of generated ones 0-9.",
         ),
     ] = ""
     robot: Annotated[

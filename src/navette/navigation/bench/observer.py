@@ -13,6 +13,8 @@ from navette.navigation.bench.trial import Point
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile, stamp_to_ns
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+OTHER = "other_slow_driving"
+"""Cause while the path is followed, and nothing limits the speed that has a name."""
 # Clearance below which a controller that names no reason drives slower because of it.
 _NEAR_M = 0.3
 # Distance from the start at which the time of a trial begins.
@@ -87,7 +89,7 @@ class TrialObserver(Node):
             (now_ns / 1e9, at.x, at.y, twist.linear.x, twist.angular.z)
         )
         self._states.append(
-            self._limit if self._state == "following" and self._limit else self._state
+            self._limit or OTHER if self._state == "following" else self._state
         )
         if self.began_ns is None:
             moved = math.dist((at.x, at.y), self._samples[0][1:3])

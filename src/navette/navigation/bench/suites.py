@@ -46,8 +46,8 @@ def suite_trials(
     Args:
         suite: one of :data:`SUITES`.
         data: folder of a data set.
-        worlds: numbers of worlds; empty = all of a data set, 0 … 9 of a generator
-            (0 … 29 of ``dynabarn-like``).
+        worlds: numbers of worlds, or of the runs of the course; empty = all of a data
+            set and the course, 0 … 9 of a generator (0 … 29 of ``dynabarn-like``).
         robot: instead of the suite's own.
 
     Raises:
@@ -76,7 +76,7 @@ def suite_trials(
             for seed in worlds or range(30)
         ]
     elif suite == "course":
-        trials = _course_trials()
+        trials = _course_trials(worlds)
     else:
         kinds = tuple(GENERATORS) if suite == "random" else (suite,)
         seeds = worlds or tuple(range(10))
@@ -84,7 +84,8 @@ def suite_trials(
     return [replace(t, robot=robot) for t in trials] if robot else trials
 
 
-def _course_trials() -> list[Trial]:
+def _course_trials(numbers: tuple[int, ...]) -> list[Trial]:
+    """Return the runs in the reference world, or those with the given numbers."""
     runs = [
         Trial(
             suite="course",
@@ -105,7 +106,14 @@ def _course_trials() -> list[Trial]:
         goals=_COURSE,
         limit_s=_COURSE_LIMIT_S,
     )
-    return _with_shortest([*runs, whole])
+    trials = [*runs, whole]
+    missing = [number for number in numbers if number >= len(trials)]
+    if missing:
+        names = ", ".join(f"{i} {each.name}" for i, each in enumerate(trials))
+        raise InvalidValueError(
+            f"runs {missing}: not in the course; available: {names}"
+        )
+    return _with_shortest([trials[i] for i in numbers] or trials)
 
 
 def _with_shortest(trials: list[Trial]) -> list[Trial]:

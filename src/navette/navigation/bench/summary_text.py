@@ -28,7 +28,9 @@ def summary_text(summary: Summary, name: str) -> str:
         f"{_known(summary.worst_pose_error_m, 3)} m",
         "jerk": f"{_known(summary.jerk, 2)} m/s³",
         "outcomes": ", ".join(f"{k} {v}" for k, v in summary.outcomes.items()),
-        "lost seconds": ", ".join(f"{k} {v:.2f}" for k, v in summary.lost_s.items()),
+        "lost seconds": ", ".join(
+            f"{k.replace('_', ' ')} {v:.2f}" for k, v in summary.lost_s.items()
+        ),
         "CPU": ", ".join(f"{node} {100 * share:.1f} %" for node, share in cpu)
         + f" of real time; a run ×{_known(summary.real_time_factor, 1)}",
     }

@@ -74,3 +74,11 @@ def test_suites_name_their_trials() -> None:
         suite_trials("barn", data=None, worlds=(), robot=None)
     with pytest.raises(UnknownNameError, match="known: barn"):
         suite_trials("moon", data=None, worlds=(), robot=None)
+
+
+def test_runs_of_the_course_are_chosen_by_number() -> None:
+    chosen = suite_trials("course", data=None, worlds=(2, 10), robot=None)
+    assert [each.name for each in chosen] == ["box-and-wall", "seven-goals"]
+    assert len(suite_trials("course", data=None, worlds=(), robot=None)) == 11
+    with pytest.raises(InvalidValueError, match=r"runs \[11\].*10 seven-goals"):
+        suite_trials("course", data=None, worlds=(0, 11), robot=None)
