@@ -30,6 +30,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         )
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests() -> None:
+    """Install the hook before pytest imports a conftest.py, which may import rclpy."""
+    if not _HAS_ROS:
+        install()
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Install the hook before pytest imports the tests."""
     if not _HAS_ROS:

@@ -375,6 +375,7 @@ class TestRos2IsInstalled:
 
 @pytest.mark.slow
 def test_the_pytest_plugin_installs_the_hook(tmp_path: Path) -> None:
+    (tmp_path / "conftest.py").write_text("import rclpy\n")
     (tmp_path / "test_talker.py").write_text(
         textwrap.dedent("""
             import rclpy
