@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 from bench_office import NOISE, WITHIN_M
 
+from navette.geometry import Pose2, Transform3
 from navette.navigation.bench.large_office import lethal_cells_near, make_large_office
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
 
-from .test_amcl import blind, drive, jump
+from .test_amcl import START, blind, carry, drive, jump
 
 pytestmark = pytest.mark.long
 
@@ -21,6 +22,26 @@ def test_disturbances_are_corrected(
     tmp_path: Path, change: Callable[[Simulation], None] | None
 ) -> None:
     found = drive(tmp_path, change, localization="slam")
+    assert (found.result, found.contacts) == ("reached", 0)
+    assert found.final_m < 0.15
+
+
+def carry_and_return(simulation: Simulation) -> None:
+    """Put the robot into a room that is not mapped, and back after five seconds."""
+    carry(Pose2(2.0, 2.5, -2.0))(simulation)
+
+    def back() -> None:
+        timer.cancel()
+        simulation.sim.simulator.state.place(Transform3.from_pose2(START, z=0.07))
+
+    timer = simulation.monitor.create_timer(5.0, back)
+
+
+def test_a_carried_robot_is_lost_until_it_is_back(tmp_path: Path) -> None:
+    found = drive(tmp_path, carry_and_return, at_s=2.0, localization="slam")
+    assert "lost" in found.localization
+    assert "lost" in found.planner
+    assert found.localization[-1] == "localized"
     assert (found.result, found.contacts) == ("reached", 0)
     assert found.final_m < 0.15
 
