@@ -49,6 +49,16 @@ def test_the_first_measurement_of_an_entry_replaces_its_initial_value() -> None:
     assert estimate.covariance[Y, Y] == 1e-9
 
 
+def test_a_known_initial_value_is_weighted() -> None:
+    covariance = 0.25 * np.eye(SIZE)
+    ekf = PlanarEkf(0.0 * covariance, covariance, np.ones(SIZE), frozenset({X}))
+    for _ in range(2):
+        ekf.step(seen(X, 6.0, variance=1.0))
+        assert ekf.estimate_at(0).state[X] == pytest.approx(2.0)
+        assert ekf.estimate_at(0).covariance[X, X] == pytest.approx(0.2)
+        ekf.reset()
+
+
 def test_two_measurements_are_weighted_by_their_variances() -> None:
     ekf = new_filter(noise=0.0)
     ekf.step(seen(X, 0.0, variance=1.0))

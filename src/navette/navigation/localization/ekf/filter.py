@@ -77,6 +77,7 @@ class PlanarEkf:
         process_noise: (8, 8) added to the covariance per second.
         initial_covariance: (8, 8) before the first measurement.
         initial_state: (8,) before the first measurement; default 0.
+        known: entries of it that count as measured, with the initial covariance.
 
     Attributes:
         squared_distance: normalised innovation squared of the last measurement; 0 for
@@ -88,7 +89,9 @@ class PlanarEkf:
         process_noise: Array,
         initial_covariance: Array,
         initial_state: Array | None = None,
+        known: frozenset[int] = frozenset(),
     ) -> None:
+        self.known = known
         self.process_noise = process_noise
         self.initial_covariance = initial_covariance
         self.initial_state = np.zeros(SIZE) if initial_state is None else initial_state
@@ -98,7 +101,10 @@ class PlanarEkf:
         """Return to the initial state."""
         self.squared_distance = 0.0
         self.snapshot = FilterSnapshot(
-            None, self.initial_state, self.initial_covariance, frozenset(range(SIZE))
+            None,
+            self.initial_state,
+            self.initial_covariance,
+            frozenset(range(SIZE)) - self.known,
         )
 
     @property

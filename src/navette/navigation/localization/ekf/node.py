@@ -44,6 +44,7 @@ from navette.navigation.localization.ekf.sensors import (
 )
 from navette.navigation.localization.ekf.state import (
     PLANAR,
+    YAW,
     X,
     Y,
     is_covariance,
@@ -233,8 +234,9 @@ class EkfNode(StageNode):
             planar_covariance(getattr(params, name), name)
             for name in ("process_noise_covariance", "initial_estimate_covariance")
         )
+        known = frozenset({X, Y, YAW}) if params.initial_pose_is_known else frozenset()
         self._filter = OrderedEkf(
-            PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR]),
+            PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR], known),
             round(params.history_length_s * 1e9),
             round(params.max_gap_s * 1e9),
         )

@@ -113,6 +113,11 @@ class EkfParams(Params):
         (0.0,) * len(SPATIAL),
         "state before the first measurement: " + " ".join(SPATIAL) + ", m and rad",
     )
+    initial_pose_is_known: bool = param(
+        False,
+        "whether x, y and yaw of initial_state count as measured; otherwise the first "
+        "measurement of an entry, such as a fix, replaces its initial value",
+    )
     history_length_s: float = param(
         1.0,
         "largest age of a late measurement relative to the newest; an older one is "
