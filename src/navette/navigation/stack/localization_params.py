@@ -50,7 +50,6 @@ def localization_parameters(
             **_fused(sim, origin),
             "process_noise_covariance": list(_PROCESS_NOISE),
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
-            "initial_pose_is_known": True,
         },
         "amcl": {
             "global_frame_id": sim.map_frame,
