@@ -40,11 +40,11 @@ def test_a_lost_sensor_stops_the_robot_within_half_a_second(
     simulate: MakeSimulation, monkeypatch: pytest.MonkeyPatch, robot: str, topic: str
 ) -> None:
     simulation = driving(simulate, robot)
-    publish = simulation.sim.publish
+    hand_over = simulation.sim.hand_over
     monkeypatch.setattr(
         simulation.sim,
-        "publish",
-        lambda name, msg: None if name == topic else publish(name, msg),
+        "hand_over",
+        lambda name, msg: None if name == topic else hand_over(name, msg),
     )
     simulation.executor.spin_for(STOP_WITHIN_NS)
     assert speed(simulation) < 0.02
@@ -56,7 +56,7 @@ def test_lost_scans_do_not_stop_the_robot(
     simulate: MakeSimulation, monkeypatch: pytest.MonkeyPatch, robot: str
 ) -> None:
     simulation = driving(simulate, robot)
-    publish = simulation.sim.publish
+    hand_over = simulation.sim.hand_over
     rng = np.random.default_rng(5)
     lost: list[bool] = []
 
@@ -66,9 +66,9 @@ def test_lost_scans_do_not_stop_the_robot(
             lost.append(bool(rng.random() < 0.1) and lost[-2:] != [True, True])
             if lost[-1]:
                 return
-        publish(name, msg)
+        hand_over(name, msg)
 
-    monkeypatch.setattr(simulation.sim, "publish", lossy)
+    monkeypatch.setattr(simulation.sim, "hand_over", lossy)
     slowest = 1.0
     for _ in range(80):
         simulation.executor.spin_for(SECOND // 20)

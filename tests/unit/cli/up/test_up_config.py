@@ -281,6 +281,6 @@ def test_the_switch_of_localization_reaches_simulator_and_localization(
         for spec in content.specs(content.names)
         for process in spec.processes
     }
-    assert '-p localization:="odometry+imu+gnss"' in lines["sim"]
+    assert "-p localization:=odometry+imu+gnss" in lines["sim"]
     assert lines["localization"].count("--localization odometry+imu+gnss") == 1
-    assert '-p map_file:="hall.yaml"' in lines["map_memory"]
+    assert "-p map_file:=hall.yaml" in lines["map_memory"]

@@ -1,9 +1,8 @@
 """Parameter values and parameter files with substitutions."""
 
 import os
-from functools import cache
 from pathlib import Path
-from tempfile import NamedTemporaryFile, TemporaryDirectory
+from tempfile import NamedTemporaryFile
 from typing import Any, get_args
 
 import yaml
@@ -155,18 +154,17 @@ def _performed(context: LaunchContext, path: Path) -> Path:
         raise FileFormatError(path, reason) from error
     except (ValueError, yaml.YAMLError) as error:
         raise FileFormatError(path, str(error)) from error
-    return write_parameter_file(text)
+    return write_parameter_file(context, text)
 
 
-def write_parameter_file(text: str) -> Path:
-    """Return a new parameter file, which is deleted when this process ends."""
+def write_parameter_file(context: LaunchContext, text: str) -> Path:
+    """Return a new parameter file, which is deleted at the end of the launch."""
     with NamedTemporaryFile(
-        "w", prefix="launch_params_", suffix=".yaml", dir=_folder().name, delete=False
+        "w",
+        prefix="launch_params_",
+        suffix=".yaml",
+        dir=context.scratch_folder(),
+        delete=False,
     ) as file:
         file.write(text)
     return Path(file.name)
-
-
-@cache
-def _folder() -> "TemporaryDirectory[str]":
-    return TemporaryDirectory(prefix="navette_launch_")
