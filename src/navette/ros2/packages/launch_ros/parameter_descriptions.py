@@ -1,8 +1,10 @@
 """Parameter values and parameter files with substitutions."""
 
+import atexit
 import os
+from functools import cache
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import NamedTemporaryFile, TemporaryDirectory
 from typing import Any, get_args
 
 import yaml
@@ -154,17 +156,20 @@ def _performed(context: LaunchContext, path: Path) -> Path:
         raise FileFormatError(path, reason) from error
     except (ValueError, yaml.YAMLError) as error:
         raise FileFormatError(path, str(error)) from error
-    return write_parameter_file(context, text)
+    return write_parameter_file(text)
 
 
-def write_parameter_file(context: LaunchContext, text: str) -> Path:
-    """Return a new parameter file, which is deleted at the end of the launch."""
+def write_parameter_file(text: str) -> Path:
+    """Return a new parameter file, which is deleted when this process ends."""
     with NamedTemporaryFile(
-        "w",
-        prefix="launch_params_",
-        suffix=".yaml",
-        dir=context.scratch_folder(),
-        delete=False,
+        "w", prefix="launch_params_", suffix=".yaml", dir=_folder(), delete=False
     ) as file:
         file.write(text)
     return Path(file.name)
+
+
+@cache
+def _folder() -> Path:
+    folder = TemporaryDirectory(prefix="navette_launch_")
+    atexit.register(folder.cleanup)
+    return Path(folder.name)

@@ -229,7 +229,7 @@ class Node(ExecuteProcess):
                 self.__expanded_parameter_arguments.append((rule, False))
                 self._append("-p", rule)
             else:
-                self._append_file(self._file_of(context, given))
+                self._append_file(self._file_of(given))
         if files:
             check_later(context, self, files)
 
@@ -237,10 +237,10 @@ class Node(ExecuteProcess):
         self.__expanded_parameter_arguments.append((str(path), True))
         self._append("--params-file", str(path))
 
-    def _file_of(self, context: LaunchContext, values: dict[str, Any]) -> Path:
+    def _file_of(self, values: dict[str, Any]) -> Path:
         """Return a file of parameters, for the node's name if it is known."""
         name = self.node_name if self.is_node_name_fully_specified() else "/**"
-        return write_parameter_file(context, format_parameters({name: values}))
+        return write_parameter_file(format_parameters({name: values}))
 
 
 class _Rule(Substitution):
