@@ -6,7 +6,8 @@ so that a run whose results were saved seems to have failed. Such threads are
 
 - a thread in which a session closes: closing waits for links that are being opened, up
   to 10 s if the other process is stopped (Ctrl-Z) or the machine is busy;
-- daemon threads of a program that publishes, or creates publishers, in them.
+- daemon threads of a program that publishes, or creates publishers, in them;
+- Zenoh's threads while they deliver a sample or a change of the graph.
 
 The interpreter therefore waits.
 """
@@ -51,9 +52,16 @@ def _wait_for_all() -> None:
         _skips_waiting.wait(_POLL_S)
 
 
-def _is_call(frame: FrameType) -> bool:
-    """Return whether a thread executes a function of the transport."""
-    return frame.f_code.co_filename.startswith(_ZENOH)
+def _is_call(frame: FrameType | None) -> bool:
+    """Return whether a thread executes a function of the transport, or is called by it.
+
+    Zenoh's own threads call the transport, which calls other parts of Navette.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename.startswith(_ZENOH):
+            return True
+        frame = frame.f_back
+    return False
 
 
 # A forked child has none of its parent's threads.
