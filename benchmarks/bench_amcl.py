@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
-from navette.navigation.bench.generators import generate
 from navette.navigation.grids import GridSpec
 from navette.navigation.localization.amcl import AmclParams
 from navette.navigation.localization.amcl.confidence import LocalizationState
 from navette.navigation.localization.amcl.localizer import MapLocalizer, ScanView
+from navette.navigation.worlds.generators import generate
 from navette.sim import SimParams, load_robot
 from navette.sim.simulator import Simulator
 

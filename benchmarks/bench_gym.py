@@ -118,7 +118,7 @@ def main() -> None:
     bench = Benchmark("gymnasium", __doc__, budget_s=4.0)
     contenders = {
         "navette": stepping(navette_env()),
-        "navette, 5 ms physics": stepping(navette_env(timestep_s=0.005)),
+        "navette, 2 ms physics": stepping(navette_env(timestep_s=0.002)),
     }
     if irsim is not None:
         contenders["ir-sim"] = irsim_stepping()
@@ -126,7 +126,7 @@ def main() -> None:
     own = {"navette": stepping(navette_env("rooms:3")), **others()}
     bench.case("each in its own world", own, per_run=STEPS)
     bench.figure(rate("Jackal among posts", navette_env()))
-    bench.figure(rate("Jackal, 5 ms physics", navette_env(timestep_s=0.005)))
+    bench.figure(rate("Jackal, 2 ms physics", navette_env(timestep_s=0.002)))
     bench.figure(rate("Burger in rooms", navette_env("rooms:3", "turtlebot3_burger")))
     bench.main()
 

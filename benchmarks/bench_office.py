@@ -14,9 +14,9 @@ import sys
 import time
 
 from navette.navigation.bench.cpu import CpuMeter
-from navette.navigation.bench.large_office import lethal_cells_near, make_large_office
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
+from navette.navigation.worlds.large_office import lethal_cells_near, make_large_office
 
 WITHIN_M, SHARE = 0.10, 0.98
 NOISE = {"wheel_noise_m": 0.01, "lidar_noise_m": 0.01}

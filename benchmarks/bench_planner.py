@@ -25,7 +25,7 @@ from skimage.graph import MCP_Geometric
 
 from navette.geometry import Pose2
 from navette.navigation.grids import CellWindow, GridSpec
-from navette.navigation.planning import Goal, Planner, PlannerParams, dijkstra
+from navette.navigation.planning import Goal, NewMap, Planner, PlannerParams, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.received_map import MapPart, ReceivedMap
@@ -176,14 +176,14 @@ def add_whole_plans(bench: Benchmark) -> None:
     for row, column in ((80, 90), (140, 140), (210, 70), (230, 190), (120, 230)):
         occupancy[row : row + 25, column : column + 25] = 100
     planner = Planner(PlannerParams(footprint_m=outline))
-    planner.set_map(occupancy, spec)
+    planner.set_map(NewMap(occupancy, spec))
     easy = Pose2(-12.0, -12.0, 0.8), Goal(12.0, 11.0)
     tight = Pose2(-13.1, -13.1, math.radians(-135)), Goal(-5.0, -12.0)
     for ask in (easy, tight):
         assert planner.plan(*ask).outcome.has_path
 
     def prepare() -> object:
-        planner.set_map(occupancy, spec)
+        planner.set_map(NewMap(occupancy, spec))
         return planner.grid()
 
     bench.case("prepare a 300² map", {"navette": prepare})
@@ -199,7 +199,7 @@ def add_map_updates(bench: Benchmark, size: int, target_ms: float) -> None:
     for row, column in rng.integers(50, size - 50, (size // 8, 2)).tolist():
         cells[row : row + 20, column : column + 20] = 100
     received, navigator = ReceivedMap(cells, spec), Navigator(PlannerParams())
-    navigator.set_map(cells, spec)
+    navigator.set_map(NewMap(cells, spec))
     navigator.set_goal(Goal(*(size * spec.resolution - 1.0,) * 2), 0)
     clock = itertools.count(0, 1_000_000)  # a robot at rest would be stuck
 
@@ -222,7 +222,7 @@ def add_map_updates(bench: Benchmark, size: int, target_ms: float) -> None:
         row, column = rng.integers(0, np.array(part.shape) - 8).tolist()
         part[row : row + 8, column : column + 8] = 100
         changed = received.update(MapPart(part, window))
-        navigator.set_map(received.cells, spec, changed=changed)
+        navigator.set_map(NewMap(received.cells, spec, changed=changed))
         step(here)
 
     bench.case(

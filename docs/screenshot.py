@@ -2,7 +2,8 @@
 chromium.
 
 Runs the demo for each picture and captures the page during the drive: the workbench,
-the scene in 3D, a phone, and a moving picture.
+the scene in 3D, a phone, and a moving picture. The demo runs in real time: nothing else
+may load the machine, or the page displays a lower speed.
 """
 
 import base64
@@ -27,16 +28,10 @@ FILM = IMAGES / "page.webp"
 FILM_SIZE, FILM_S, FILM_HZ = (960, 600), 14, 4
 
 
-# A slow clock: a busy machine draws as much of the drive as an idle one.
-_SLOW = "navette.connection.callService('/sim/set_rate', { rate: 0.4 })"
-_PAUSE = """navette.connection.callService(
-    '/sim/set_simulation_state', { state: { state: 2 } })"""
-
-
 class Shot(NamedTuple):
     """A picture of a drive of its own, when the robot's clock shows ``moment``.
 
-    ``script`` runs at the beginning, ``last`` while time stands.
+    ``script`` runs at the beginning.
     """
 
     name: str
@@ -45,7 +40,6 @@ class Shot(NamedTuple):
     height: int
     scale: float
     script: str = ""
-    last: str = ""
 
 
 SHOTS = (
@@ -58,7 +52,7 @@ SHOTS = (
         1280,
         720,
         1.5,
-        last="navette.scene.setThreeDimensional(true)",
+        "navette.scene.setThreeDimensional(true)",
     ),
     Shot("page-phone.png", "0:32", 390, 780, 2.0),
 )
@@ -93,11 +87,12 @@ def capture(folder: str, work: Callable[[Browser], None]) -> None:
     browser = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert browser.stderr is not None
     try:
-        for line in browser.stderr:
-            found = re.search(r"ws://([\w.]+:\d+)/", line)
-            if found:
-                break
-        with urllib.request.urlopen(f"http://{found[1]}/json") as reply:
+        address = next(
+            found[1]
+            for line in browser.stderr
+            if (found := re.search(r"ws://([\w.]+:\d+)/", line))
+        )
+        with urllib.request.urlopen(f"http://{address}/json") as reply:
             page = next(each for each in json.load(reply) if each["type"] == "page")
         with connect(page["webSocketDebuggerUrl"], max_size=None) as socket:
             work(Browser(socket))
@@ -131,15 +126,10 @@ def _pause(browser: Browser, seconds: float) -> None:
 def _take(browser: Browser, address: str, shot: Shot) -> None:
     _open(browser, address, (shot.width, shot.height), shot.scale)
     _pause(browser, 3.0)
-    browser.evaluate(_SLOW)
     browser.evaluate(shot.script)
     clock = "document.querySelector('#clock')?.textContent ?? ''"
     while (browser.evaluate(clock) or "") < shot.moment:
         _pause(browser, 0.2)
-    if shot.last:
-        browser.evaluate(_PAUSE)
-        browser.evaluate(shot.last)
-        _pause(browser, 8.0)  # without a graphics card
     (IMAGES / shot.name).write_bytes(_picture(browser))
 
 

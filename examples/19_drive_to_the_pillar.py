@@ -87,7 +87,7 @@ with navette.init(clock=navette.VirtualClock()):
     executor.spin_for(3_000_000_000)
     print(f"after 9 s: {operator.set_driving(drive=True)} at x = {operator.x:.1f} m")
     executor.spin_for(31_000_000_000)
-    seen = f"({operator.marker.x:.1f}, {operator.marker.y:.1f})"
+    seen = f"({operator.marker.x:.1f}, {operator.marker.y:z.1f})"
     print(
         f"after 40 s: {driver.distance:.1f} m in front of the pillar, "
         f"marker at {seen} in the laser frame"

@@ -10,9 +10,9 @@ The same on the command line, with a plot::
 
 Prints::
 
-    wheels:            8.34 m maximum error, 4.54 m mean error
-    wheels, imu:       3.50 m maximum error, 1.09 m mean error
-    wheels, imu, gps:  0.63 m maximum error, 0.25 m mean error
+    wheels:            8.37 m maximum error, 4.57 m mean error
+    wheels, imu:       4.10 m maximum error, 1.35 m mean error
+    wheels, imu, gps:  0.65 m maximum error, 0.26 m mean error
 """
 
 import tempfile

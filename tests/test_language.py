@@ -88,6 +88,7 @@ DIMENSIONLESS = (
     r"odometry_noise|(loop_)?min_(overlap|score)|max_contradicted",  # shares
     # Names of Nav2's AMCL, in metres, radians and seconds; and shares.
     r"transform_tolerance|alpha[1-5]|update_min_[da]|laser_\w+|sigma_hit|z_\w+",
+    r"lambda_short|beam_skip_\w+|save_pose_rate",
     r"speed_base|speed_multiplier|independent_beams|pf_\w+|recovery_alpha_\w+|(lost|localized)_match",
     # Names of twist_mux, in seconds.
     r"timeout|hold",

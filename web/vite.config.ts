@@ -1,3 +1,6 @@
+import { createHash } from "node:crypto";
+import { readdirSync, readFileSync } from "node:fs";
+import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
 
 /** Docking is loaded by large screens only; they begin with it before the first script has run. */
@@ -11,10 +14,33 @@ const preloadDocking = {
   ],
 };
 
+const WORKER = "sw.js";
+
+/** The service worker begins with the names of all files and their hash: it changes with each of them. */
+const listFiles: Plugin = {
+  name: "list-files",
+  apply: "build",
+  generateBundle: {
+    order: "post",
+    handler(_options, bundle) {
+      const files = new Map<string, string | Uint8Array>();
+      for (const file of Object.values(bundle)) files.set(file.fileName, file.type === "chunk" ? file.code : file.source);
+      for (const name of readdirSync("public")) files.set(name, readFileSync(`public/${name}`));
+      const names = [...files.keys()].sort();
+      const hash = createHash("sha256");
+      for (const name of names) hash.update(name).update(files.get(name)!);
+      const worker = bundle[WORKER];
+      if (worker?.type !== "chunk") throw new Error(`the build has no ${WORKER}`);
+      const listed = JSON.stringify(names.filter((name) => name !== WORKER));
+      worker.code = `const PAGE_FILES=${listed},PAGE_VERSION="${hash.digest("hex").slice(0, 16)}";\n${worker.code}`;
+    },
+  },
+};
+
 // The files are the same wherever they are built: names carry a hash of the content only.
 export default defineConfig({
   base: "./",
-  plugins: [preloadDocking],
+  plugins: [preloadDocking, listFiles],
   build: {
     outDir: "../src/navette/viewer/page",
     emptyOutDir: true,
@@ -23,8 +49,9 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     reportCompressedSize: false,
     rolldownOptions: {
+      input: { index: "index.html", sw: "src/offline/worker.ts" },
       output: {
-        entryFileNames: "assets/[name].js",
+        entryFileNames: ({ name }) => (name === "sw" ? WORKER : "assets/[name].js"),
         chunkFileNames: "assets/[name].js",
         assetFileNames: "assets/[name][extname]",
       },

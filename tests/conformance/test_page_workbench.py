@@ -187,7 +187,7 @@ def test_space_stops_wherever_the_focus_is(person: Person) -> None:
 def test_files_are_saved_and_loaded_and_refusals_have_a_reason(person: Person) -> None:
     seen = person.seen()
     header, first = seen["csv"]
-    assert header == 'time_s,"/odom/filtered.twist.twist.linear.x"'
+    assert header == 'time_s,"/odom/filtered.twist.twist.angular.z"'
     assert len(first.split(",")) == 2
     assert bytes(seen["png"]) == b"\x89PNG"
     assert seen["parameter"] == "2", "the value in effect"
@@ -202,3 +202,28 @@ def test_the_page_returns_with_the_server(person: Person, demo: Demo) -> None:
     demo.start()
     person.write("back")
     assert person.seen()["lost"]
+
+
+@pytest.mark.slow
+@part("offline")
+def test_the_page_opens_while_the_server_is_away(person: Person, demo: Demo) -> None:
+    assert person.read() == "end\n"
+    demo.stop()
+    person.write("ended")
+    assert person.read() == "start\n"
+    demo.start()
+    person.write("back")
+    seen = person.seen()
+    assert seen["manifest"] == []
+    assert seen["installability"] in ([], ["in-incognito"])
+    assert seen["lost"] == ["Not connected", "Not connected"]
+
+
+@pytest.mark.slow
+@part("measure", *BROWSERS)
+def test_lengths_are_measured_by_clicks_and_by_a_drag(person: Person) -> None:
+    seen = person.seen()
+    lengths = [float(seen[name].split()[0]) for name in ("clicked", "dragging")]
+    assert lengths == pytest.approx([3.0, 5.0], abs=0.05)
+    assert seen["dragged"] == seen["dragging"]
+    assert seen["after"] is None

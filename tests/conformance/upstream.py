@@ -44,8 +44,10 @@ _FIXTURES = Path("test_msgs/src")
 STAND_INS = Path(__file__).with_name("stand_ins")
 #: Prints the data files that setup.py gives.
 _DATA_FILES = """
-import json, runpy, setuptools
-setuptools.setup = lambda **given: print(json.dumps(given.get("data_files", [])))
+import json, runpy, setuptools, distutils.core
+def setup(**given):
+    print(json.dumps(given.get("data_files", [])))
+setuptools.setup = distutils.core.setup = setup
 runpy.run_path("setup.py", run_name="__main__")
 """
 _LAUNCH_TEST = """#!/bin/sh
@@ -125,20 +127,25 @@ def run_suite(
         install(packages, prefix)
         # launch_ros starts nodes of packages; launch_testing needs installed files.
         sources = packages if name == "launch_ros" else []
+        found = (each / "pytest.ini" for each in folder.parents)
+        settings = next(filter(Path.is_file, found), Path(os.devnull))
         command = [
-            *(sys.executable, "-m", "pytest", str(folder), f"--junitxml={report}"),
-            *("-p", "navette.ros2.names.pytest_plugin", "-p", "no:cacheprovider"),
-            *("-p", "no:xdist"),
-            *("-o", "addopts=", "-q", "--tb=short", f"--confcutdir={folder.parent}"),
+            *(sys.executable, "-m", "pytest", f"--junitxml={report}"),
+            *("-p", "no:cacheprovider", "-p", "no:xdist", "-c", str(settings)),
+            *("-q", "--tb=short", f"--confcutdir={folder.parent}"),
             *("--continue-on-collection-errors", f"--timeout={TEST_TIMEOUT_S}"),
             f"--rootdir={folder}",
-            *(f"--ignore-glob=*test_{linter}.py" for linter in LINTERS),
+            *(f"--ignore-glob={folder}/*test_{linter}.py" for linter in LINTERS),
+            f"--ignore-glob={folder}/*.launch.py",  # data; --doctest-modules takes them
+            str(folder),  # behind the options: --launch-args takes the words after it
         ]
         subprocess.run(
             command,
-            cwd=folder,
+            cwd=scratch,
             env=os.environ
             | {
+                # Also for the pytest processes that the tests start.
+                "PYTEST_PLUGINS": "navette.ros2.names.pytest_plugin",
                 "PYTHONPATH": os.pathsep.join(
                     map(str, [folder.parent, STAND_INS, *search])
                 ),

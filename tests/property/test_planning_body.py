@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import GridSpec
-from navette.navigation.planning import Goal, Planner, PlannerParams
+from navette.navigation.planning import Goal, NewMap, Planner, PlannerParams
 
 OUTLINE = (0.6, 0.25, -0.2, 0.25, -0.2, -0.25, 0.6, -0.25)
 """A body that sweeps much more when it turns than it is wide (m)."""
@@ -45,7 +45,7 @@ def test_paths_keep_the_margin_and_end_at_the_goal(
         ] = 100
     begin = pose_in_grid(*start)
     end = pose_in_grid(*goal, 0.0)
-    PLANNER.set_map(occupancy, SPEC)
+    PLANNER.set_map(NewMap(occupancy, SPEC))
     plan = PLANNER.plan(begin, Goal(end.x, end.y))
     assert plan.outcome.has_path == bool(len(plan.poses))
     if not plan.outcome.has_path:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from reachability import WorldGeometry, connected
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.bench.reachability import WorldGeometry, connected
 from navette.navigation.grids import GridSpec
 from navette.navigation.planning.body_space import BodySpace
 

@@ -103,7 +103,7 @@ def test_a_robot_whose_nose_is_stuck_backs_up_along_its_path_and_arrives(
     simulate: MakeSimulation, impatient: Path
 ) -> None:
     room = World("room").add_walls((10.0, 10.0))
-    room.add_box((1.6, 0.0), (0.3, 0.2), height=0.2)  # below the plane of the lidar
+    room.add_box((1.6, 0.0), (0.3, 0.7), height=0.2)  # below the plane of the lidar
     simulation = simulate(
         scene=room.scene(),
         robot="jackal",

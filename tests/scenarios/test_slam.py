@@ -8,9 +8,9 @@ import pytest
 from bench_office import NOISE, WITHIN_M
 
 from navette.geometry import Pose2, Transform3
-from navette.navigation.bench.large_office import lethal_cells_near, make_large_office
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
+from navette.navigation.worlds.large_office import lethal_cells_near, make_large_office
 
 from .test_amcl import START, blind, carry, drive, jump
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from queue import Queue
 
 import pytest
@@ -26,6 +27,7 @@ from navette.runtime.clock import Stopwatch
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="stops a process by SIGSTOP")
 
 WAIT_BEFORE_DROP_S = 0.05  # for a full link of one machine (config.py)
+ZENOHS_WAIT_S = 5.0  # for a full link, before it is closed
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 CELLS = 50_000  # one packet: long messages are divided
 MOST_MAPS = 2000  # more than the buffers of a link hold
@@ -79,32 +81,58 @@ def publish_until_full(publisher: Publisher[OccupancyGrid]) -> int:
     raise AssertionError("the link holds every map")
 
 
-def test_the_last_map_reaches_a_reader_that_was_stopped(writer: Node) -> None:
-    publisher = writer.create_publisher(OccupancyGrid, "map", LATCHED)
-    environment = zenoh_environment(os.environ["NAVETTE_ROUTER"])
+@contextmanager
+def a_reader(widths: Queue[int]) -> Iterator[subprocess.Popen[str]]:
     command = [sys.executable, "-c", SUBSCRIBER]
+    environment = zenoh_environment(os.environ["NAVETTE_ROUTER"])
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, text=True
     ) as reader:
-        widths: Queue[int] = Queue()
         lines = reader.stdout or ()
 
         def read() -> None:
             for line in lines:
                 widths.put(int(line))
 
-        receive = threading.Thread(target=read, daemon=True)
-        receive.start()
+        threading.Thread(target=read, daemon=True).start()
         try:
-            until(lambda: publisher.get_subscription_count() == 1, "the reader")
-            publisher.publish(a_map(1))
-            assert widths.get(timeout=LIMIT_S) == 1
-            os.kill(reader.pid, signal.SIGSTOP)
-            last = publish_until_full(publisher)
-            os.kill(reader.pid, signal.SIGCONT)
-            received = [1]
-            while received[-1] != last:
-                received.append(widths.get(timeout=LIMIT_S))
+            yield reader
         finally:
             reader.kill()
+
+
+def test_the_last_map_reaches_a_reader_that_was_stopped(writer: Node) -> None:
+    publisher = writer.create_publisher(OccupancyGrid, "map", LATCHED)
+    widths: Queue[int] = Queue()
+    with a_reader(widths) as reader:
+        until(lambda: publisher.get_subscription_count() == 1, "the reader")
+        publisher.publish(a_map(1))
+        assert widths.get(timeout=LIMIT_S) == 1
+        os.kill(reader.pid, signal.SIGSTOP)
+        last = publish_until_full(publisher)
+        os.kill(reader.pid, signal.SIGCONT)
+        received = [1]
+        while received[-1] != last:
+            received.append(widths.get(timeout=LIMIT_S))
     assert len(received) < last, "nothing was lost"
+
+
+@pytest.mark.slow
+def test_a_link_that_was_full_for_longer_than_zenoh_waits_is_kept(writer: Node) -> None:
+    """With Zenoh's own 5 s the link was closed and never opened again."""
+    publisher = writer.create_publisher(OccupancyGrid, "map", LATCHED)
+    widths: Queue[int] = Queue()
+    with a_reader(widths) as reader:
+        until(lambda: publisher.get_subscription_count() == 1, "the reader")
+        publisher.publish(a_map(1))
+        assert widths.get(timeout=LIMIT_S) == 1
+        os.kill(reader.pid, signal.SIGSTOP)
+        last = publish_until_full(publisher)
+        # Its declaration cannot be dropped.
+        writer.create_publisher(OccupancyGrid, "other_map", LATCHED)
+        # Well before the lease of the link ends: 10 s after the reader's last packet.
+        threading.Event().wait(ZENOHS_WAIT_S + 1.0)
+        os.kill(reader.pid, signal.SIGCONT)
+        while widths.get(timeout=LIMIT_S) != last:
+            pass
+        assert publisher.get_subscription_count() == 1

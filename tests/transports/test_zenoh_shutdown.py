@@ -77,6 +77,29 @@ for _ in range(20):
 sys.exit(3)
 """
 
+# A daemon thread that collects garbage when the program ends.
+GARBAGE = """
+import gc, sys
+
+class Cycle:
+    def __init__(self):
+        self.cycle = self
+
+    def __del__(self, wait=threading.Event().wait):
+        begun.set()
+        wait(1.0)
+        print("collected")
+
+def collect():
+    Cycle()
+    gc.collect()
+
+begun = threading.Event()
+threading.Thread(target=collect, daemon=True).start()
+begun.wait()
+sys.exit(3)
+"""
+
 # Ctrl-C while the session waits for tokens.
 EARLY = """
 from navette import Context
@@ -107,6 +130,11 @@ def end_of(
 def test_the_interpreter_waits_for_a_slow_session_close() -> None:
     """Without this the process ends with SIGABRT after a successful run."""
     assert end_of(BUSY + CLOSES) == (0, "done\n", "")
+
+
+def test_the_interpreter_waits_for_a_thread_that_collects_garbage() -> None:
+    """It may free Zenoh's objects: one in 150 processes below ended with SIGABRT."""
+    assert end_of(BUSY + GARBAGE) == (3, "collected\n", "")
 
 
 def test_a_process_with_an_exit_code_ends_at_once() -> None:

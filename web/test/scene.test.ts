@@ -1,11 +1,11 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import { RobotState } from "../src/robot/robot_state";
+import { readCloud } from "../src/scene/cloud_reading";
 import { DisplayList } from "../src/scene/display_list";
 import type { Surroundings } from "../src/scene/display";
 import { knownBox } from "../src/scene/displays/grid_map";
 import { readStl } from "../src/scene/displays/meshes";
 import { readUrdf } from "../src/scene/displays/models";
-import { readCloud } from "../src/scene/displays/points";
 import { covarianceEllipse } from "../src/scene/displays/poses";
 import { convexHull, isInside } from "../src/scene/hull";
 import type { OccupancyGrid, PointCloud2 } from "../src/scene/messages";
@@ -81,6 +81,22 @@ describe("displays", () => {
       display("/lidar").parts();
     }
     expect(display("/lidar").parts()).toHaveLength(3);
+  });
+
+  it("keep a bounded number of points", () => {
+    connection.addTopic("/points", "sensor_msgs/msg/PointCloud2");
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    displays.change(display("/points"), { isVisible: true, decayS: 60 });
+    const count = 200_000;
+    const cloud: PointCloud2 = {
+      header: scan.header, height: 1, width: count, is_bigendian: false, point_step: 12, row_step: 12 * count, data: new Uint8Array(12 * count),
+      fields: ["x", "y", "z"].map((name, axis) => ({ name, offset: 4 * axis, datatype: 7, count: 1 })),
+    };
+    for (let index = 0; index < 9; index++) {
+      connection.send("/points", cloud);
+      display("/points").parts();
+    }
+    expect(display("/points").parts()).toHaveLength(6); // five that remain, and the newest
   });
 
   it("remember their look while the topic is away", () => {
@@ -159,6 +175,27 @@ describe("files and messages", () => {
     binary.setUint32(80, 1, true);
     binary.setFloat32(96, 2.5, true);
     expect(readStl(binary.buffer).positions[0]).toBe(2.5);
+  });
+
+  it("reads rows of 32-bit numbers in place, wherever the message begins", () => {
+    const [width, height, step, rowStep] = [2, 2, 16, 40]; // eight bytes of padding
+    for (const shift of [0, 3]) {
+      const data = new DataView(new ArrayBuffer(shift + height * rowStep));
+      for (let index = 0; index < width * height; index++) {
+        const at = shift + Math.floor(index / width) * rowStep + (index % width) * step;
+        [index, 10 + index, 20 + index, 30 + index].forEach((value, axis) => data.setFloat32(at + 4 * axis, value, true));
+      }
+      data.setFloat32(shift + rowStep, Infinity, true);
+      const cloud: PointCloud2 = {
+        header, height, width, is_bigendian: false, point_step: step, row_step: rowStep, data: new Uint8Array(data.buffer, shift),
+        fields: ["x", "y", "z", "intensity"].map((name, axis) => ({ name, offset: 4 * axis, datatype: 7, count: 1 })),
+      };
+      const { positions, shades } = readCloud(cloud, "intensity");
+      expect([...positions]).toEqual([0, 10, 20, 1, 11, 21, 3, 13, 23]);
+      expect([...shades]).toEqual([30, 31, 33]);
+      const cut = { ...cloud, data: cloud.data.subarray(0, rowStep + step) }; // a message that ends early
+      expect([...readCloud(cut, "height").positions]).toEqual([0, 10, 20, 1, 11, 21]);
+    }
   });
 
   it("reads clouds of other layouts, and leaves out what is not finite", () => {

@@ -28,15 +28,24 @@ def open_bag(path: Path | str) -> BagReader:
     """Open a ``.mcap``, ``.bag`` or ``.db3`` file, or a rosbag2 folder.
 
     The first bytes determine the format. A file without an index is scanned once;
-    damaged parts are listed in ``problems``, intact parts can be read.
+    damaged parts are listed in ``problems``, intact parts can be read. ``subset`` is
+    ``subset.mcap`` where only that exists: recordings get a suffix when written.
 
     Raises:
         FileFormatError: the path does not exist or is not a readable recording.
     """
-    path = Path(path)
+    path = _with_suffix(Path(path))
     if path.is_dir():
         return _open_folder(path)
     return _open_file(path)
+
+
+def _with_suffix(path: Path) -> Path:
+    """Return the path, or the existing recording whose name lacks the suffix only."""
+    if path.exists() or not path.name:
+        return path
+    named = (path.with_name(f"{path.name}{suffix}") for suffix in SUFFIXES)
+    return next((each for each in named if each.is_file()), path)
 
 
 def is_bag(path: Path) -> bool:

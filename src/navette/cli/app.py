@@ -45,7 +45,8 @@ World = Annotated[
     Argument(
         metavar="[WORLD]",
         help="A built-in world (arena, empty, …) or a file: .sdf, .world, .xml (MJCF),"
-        " .urdf, or a ROS map .yaml; or a generated one, as maze:7.",
+        " .urdf, or a ROS map .yaml; or a generated one, as rooms:3 (barn-like, forest,"
+        " rooms, office, maze, dynabarn-like).",
         complete=complete_worlds,
     ),
 ]

@@ -71,10 +71,11 @@ def _files_here(pattern: str) -> list[str]:
 
 
 def complete_worlds(incomplete: str) -> list[str]:
-    """Complete built-in worlds."""
+    """Complete built-in worlds and kinds of generated ones."""
+    from navette.navigation.worlds.generated import KINDS
     from navette.sim.library import world_names
 
-    return chosen(incomplete, world_names())
+    return chosen(incomplete, [*world_names(), *(f"{kind}:" for kind in KINDS)])
 
 
 def complete_robots(incomplete: str) -> list[str]:

@@ -70,8 +70,8 @@ class MethodOptions:
         Option(
             metavar="NODE=FILE.py[:CLASS]",
             help="Your own rclpy node instead of a node of the stack (planner, control,"
-            " costmap, map_memory, localizer, behaviors), in the same simulated time."
-            " Repeat for several.",
+            " costmap, map_memory, tracking, localizer, behaviors), in the same"
+            " simulated time. Repeat for several.",
             panel=PANEL,
         ),
     ] = None
@@ -114,15 +114,22 @@ class MethodOptions:
 
         Raises:
             InvalidValueError: not of the form NODE=PLACE.
+            UnknownNameError: no such node, or one that cannot be replaced.
         """
+        if not self.replace:
+            return {}
+        # Imported here: it loads the runtime.
+        from navette.navigation.stack.programs import check_replaceable
+
         found = {}
-        for text in self.replace or ():
+        for text in self.replace:
             node, equals, place = text.partition("=")
             if not (node and equals and place):
                 raise InvalidValueError(
                     f"--replace {text!r}: expected NODE=FILE.py or NODE=FILE.py:CLASS"
                 )
             found[node.lstrip("/")] = place
+        check_replaceable(found)
         return found
 
     @property

@@ -35,7 +35,32 @@ def create(
     ] = False,
     node: Annotated[
         str | None,
-        Option(metavar="NODE", help="Name of the node. Default: that of the package."),
+        Option(
+            "--node",
+            "--node-name",
+            metavar="NODE",
+            help="Name of the node. Default: that of the package.",
+        ),
+    ] = None,
+    build_type: Annotated[
+        str | None,
+        Option(
+            metavar="TYPE",
+            help="ament_python or ament_cmake: the build files only, as ros2 pkg"
+            " create writes them.",
+        ),
+    ] = None,
+    license_: Annotated[
+        str | None, Option("--license", metavar="NAME", help="With --build-type.")
+    ] = None,
+    description: Annotated[
+        str | None, Option(metavar="TEXT", help="With --build-type.")
+    ] = None,
+    maintainer_name: Annotated[
+        str | None, Option(metavar="NAME", help="With --build-type.")
+    ] = None,
+    maintainer_email: Annotated[
+        str | None, Option(metavar="ADDRESS", help="With --build-type.")
     ] = None,
     dependencies: Annotated[
         list[str] | None,
@@ -54,15 +79,40 @@ def create(
     The tests pass (pytest), colcon builds the package on ROS 2, and Navette runs it
     from its folder. A name that ends with _msgs creates a package of interfaces.
     """
-    from navette.ros2.workspace import create_package
+    from navette.ros2.workspace import (
+        PackageAbout,
+        create_bare_package,
+        create_package,
+    )
 
     here = Path.cwd()
     folder = destination_directory or (
         here / "src" if (here / "src").is_dir() else here
     )
-    made = create_package(
-        name, folder, node=node, messages=msgs, dependencies=dependencies or ()
-    )
+    needs = dependencies or ()
+    texts = {
+        "description": description,
+        "license": license_,
+        "maintainer": maintainer_name,
+        "email": maintainer_email,
+    }
+    given = {key: text for key, text in texts.items() if text is not None}
+    if build_type is not None:
+        if msgs:
+            raise click.UsageError("--msgs and --build-type exclude each other")
+        about = PackageAbout(**given)
+        bare = create_bare_package(
+            name, folder, build_type, node=node, dependencies=needs, about=about
+        )
+        made = [bare]
+    elif given:
+        raise click.UsageError(
+            "--license, --description and --maintainer-… need --build-type"
+        )
+    else:
+        made = create_package(
+            name, folder, node=node, messages=msgs, dependencies=needs
+        )
     for package in made:
         click.echo(f"made {package}")
         for file in sorted(path for path in package.rglob("*") if path.is_file()):

@@ -12,7 +12,6 @@ from navette.navigation.stack.options import RunOptions
 if TYPE_CHECKING:
     from navette.navigation.stack.monitor import RunProgress
     from navette.navigation.stack.simulation import Simulation
-    from navette.sim import Scene
 
 SUCCEEDED = 0
 FAILED = 1
@@ -42,7 +41,7 @@ def make_simulation(
     options: RunOptions,
     on_change: Callable[["RunProgress"], None] = lambda progress: None,
 ) -> "Simulation":
-    """Return the simulation of the options: own nodes and generated worlds, too."""
+    """Return the simulation of the options: own nodes, too."""
     # Imported here: the first import compiles the kernels.
     from navette.navigation.stack.simulation import Simulation
 
@@ -54,18 +53,8 @@ def make_simulation(
     return Simulation(
         options,
         on_change=on_change,
-        scene=_generated(options.world),
         replacements=makers,
     )
-
-
-def _generated(world: str) -> "Scene | None":
-    """Return the world ``KIND:SEED`` of a suite of the benchmark; None for another."""
-    if ":" not in world:
-        return None
-    from navette.navigation.bench.run import scene_of
-
-    return scene_of(world)
 
 
 def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> int:

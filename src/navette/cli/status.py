@@ -27,6 +27,7 @@ _WIDTH = 24
 _BESIDE_BAR = 60  # columns that the figures beside the bar may take
 _LONG_M = 1e6  # coordinates from here on are shown with an exponent
 _EXACT_M = 0.005  # a smaller error of the pose is not shown
+_NOT_FINITE = "goal_not_finite"
 _CANCELED = "canceled"
 
 
@@ -160,7 +161,8 @@ class StatusScreen:
 
     def _event(self, progress: "RunProgress") -> Text | None:
         if progress.goal is None:
-            return None
+            refused = progress.state == _NOT_FINITE  # such a goal has no place
+            return Text(f"✗ {progress.state}", style="red") if refused else None
         where = f"goal {_point(progress.goal)}"
         if progress.state == "reached":
             return Text(f"✓ {where} reached", style="green")

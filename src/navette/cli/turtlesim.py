@@ -3,11 +3,9 @@
 import functools
 import math
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 from navette import runtime
-from navette.errors import NavetteError
+from navette.cli.ros_program import add_live_view, ros_program
 from navette.msgs.geometry_msgs.msg import Twist, Vector3
 from navette.msgs.std_srvs.srv import Empty, Empty_Request
 from navette.msgs.turtlesim.action import RotateAbsolute
@@ -21,36 +19,16 @@ _ARROWS = {"up": (1, 0), "down": (-1, 0), "left": (0, 1), "right": (0, -1)}
 #: Key → heading, in eighths of a turn: their places around F on the keyboard.
 _HEADINGS = {"g": 0, "t": 1, "r": 2, "e": 3, "d": 4, "c": -3, "v": -2, "b": -1}
 _SIDE_M = 2.0
-
-
-@contextmanager
-def _ros() -> Iterator[None]:
-    """Initialise and shut down as a ROS 2 program; report user errors in one line."""
-    runtime.init(args=sys.argv)
-    try:
-        yield
-    except (KeyboardInterrupt, runtime.ExternalShutdownException):
-        pass  # the usual end
-    except NavetteError as error:
-        raise SystemExit(f"navette: {error}") from error
-    finally:
-        runtime.try_shutdown()
+#: `--remap __node:=my_turtle` renames the turtles' node only.
+_VIEWER_NAME = ("--ros-args", "--remap", "__node:=viewer")
 
 
 def turtlesim_node() -> None:
     """Run the turtles, with a live view that shows them."""
-    from navette.viewer.node import ViewerNode
-
-    with _ros():
+    with ros_program():
         executor = SingleThreadedExecutor()
         executor.add_node(TurtleSimNode())
-        try:
-            viewer = ViewerNode()
-        except NavetteError as error:  # a second one: the page of the first shows both
-            sys.stderr.write(f"navette: without a live view: {error}\n")
-        else:
-            executor.add_node(viewer)
-            viewer.get_logger().info(f"live view: {viewer.url}")
+        add_live_view(executor, cli_args=_VIEWER_NAME)
         executor.spin()
 
 
@@ -58,7 +36,7 @@ def turtle_teleop_key() -> None:
     """Drive ``turtle1`` with the keyboard."""
     from navette.cli.keyboard import listening_to_keys
 
-    with _ros():
+    with ros_program():
         node = _TeleopNode()
         executor = SingleThreadedExecutor()
         executor.add_node(node)
@@ -82,13 +60,13 @@ def turtle_teleop_key() -> None:
 
 def draw_square() -> None:
     """Drive ``turtle1`` along a square."""
-    with _ros():
+    with ros_program():
         runtime.spin(_SquareNode())
 
 
 def mimic() -> None:
     """Move a turtle (``output/cmd_vel``) as another does (``input/pose``)."""
-    with _ros():
+    with ros_program():
         node = Node("turtle_mimic")
         commands = node.create_publisher(Twist, "output/cmd_vel", _QOS)
         node.create_subscription(

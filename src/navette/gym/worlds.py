@@ -11,17 +11,17 @@ import numpy as np
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.gym.route import FreeSpace, Point
-from navette.navigation.bench import dynabarn, moving_worlds
-from navette.navigation.bench.generators import GENERATORS, generate
+from navette.navigation.bench.dynabarn import GOAL
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
+from navette.navigation.worlds import moving_worlds
+from navette.navigation.worlds.dynabarn import START
+from navette.navigation.worlds.generated import KINDS
+from navette.navigation.worlds.generators import generate
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene, SimParams, Simulator
 
 NodeParameters = Mapping[str, Mapping[str, Any]]
-
-KINDS = (*GENERATORS, moving_worlds.KIND)
-"""Kinds of generated worlds."""
 
 _FAR_AWAY = Pose2(1e4, 1e4, 0.0)
 
@@ -116,7 +116,7 @@ class WorldSource:
     def _generated(self, seed: int) -> EpisodeWorld:
         if self._kind == moving_worlds.KIND:
             scene = moving_worlds.moving_scene(seed)
-            world = self._compile("empty", scene, dynabarn.START, dynabarn.GOAL)
+            world = self._compile("empty", scene, START, GOAL)
         else:
             drawn = generate(self._kind, seed)
             world = self._compile("empty", drawn.scene, drawn.start, drawn.goal)

@@ -1,7 +1,7 @@
 """Nodes, with rclpy's API."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.msgs.rcl_interfaces.msg import (
@@ -65,6 +65,11 @@ HIDDEN_NODE_PREFIX = "_"
 MsgT = TypeVar("MsgT")
 
 
+#: rclpy's private tables by name, and what they are here. They are not attributes, so
+#: that a node class may have its own of that name.
+_PRIVATE_TABLES = {"_parameters": "values", "_descriptors": "descriptors"}
+
+
 class Node(HasHandle, GraphQueries, NodeParameters):
     """Owns publishers, subscriptions, services, timers and parameters under one name.
 
@@ -78,8 +83,14 @@ class Node(HasHandle, GraphQueries, NodeParameters):
 
     if not TYPE_CHECKING:  # type checkers would accept any attribute name
 
-        def __getattr__(self, name: str) -> NoReturn:
-            """Raise AttributeError; mention a missing ``super().__init__`` call."""
+        def __getattr__(self, name: str) -> Any:
+            """Return a table that programs read although it is private in rclpy.
+
+            Raises:
+                AttributeError: mentions a missing ``super().__init__`` call.
+            """
+            if name in _PRIVATE_TABLES and "_node_store" in vars(self):
+                return dict(getattr(self._node_store, _PRIVATE_TABLES[name]))
             text = f"{type(self).__name__!r} object has no attribute {name!r}"
             if "_node_entities" not in vars(self):
                 text += (

@@ -77,7 +77,9 @@ class DescriptorWakeup(Wakeup):
         self._descriptor = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
 
     def __del__(self) -> None:
-        os.close(self._descriptor)
+        descriptor = getattr(self, "_descriptor", None)
+        if descriptor is not None:  # an interrupt may end __init__ before
+            os.close(descriptor)
 
     def set(self) -> None:
         if not self._is_set:

@@ -3,7 +3,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from navette.sim.drive_geometry import DriveWheel
 from navette.sim.params import CONTROL_PERIOD_S, SimParams
@@ -178,21 +177,3 @@ def rim_speed(wheel: DriveWheel, drive: DiffDrive, speed: BodySpeed) -> float:
     """Return the speed (m/s) of a wheel's rim at a velocity of the base."""
     turning = wheel.side * speed.angular * drive.wheel_separation / 2
     return speed.linear - turning - wheel.slide * speed.side
-
-
-class SteeringAngles(NamedTuple):
-    """Angles (rad) of the left and the right wheel, left positive."""
-
-    left: float
-    right: float
-
-
-def steering_angles(drive: AckermannDrive, steering: float) -> SteeringAngles:
-    """Return the angles at which both wheels turn about the same centre."""
-    curvature = drive.curvature_of(steering)
-    half = drive.kingpin_width / 2
-
-    def angle(side: float) -> float:
-        return math.atan2(drive.wheel_base * curvature, 1.0 - side * half * curvature)
-
-    return SteeringAngles(angle(1.0), angle(-1.0))

@@ -177,13 +177,14 @@ class SimNode(StageNode):
     def _start_again(self) -> None:
         """Reset, and leave no part of the run before: goal, pose estimate, maps.
 
-        SLAM, which ignores estimates in a map that it makes, begins a new map.
+        SLAM begins a new map; other nodes that locate the robot get an initial pose.
         """
         self.reset()
         self.publish(topics.CANCEL_GOAL.name, Empty())
-        estimate = messages.estimate_of(self._truth(self.stamp_ns))
-        self.publish(topics.INITIAL_POSE.name, estimate)
         self._call("std_srvs/srv/Empty", _NEW_MAP)
+        if self.params.locator != "slam":
+            estimate = messages.estimate_of(self._truth(self.stamp_ns))
+            self.publish(topics.INITIAL_POSE.name, estimate)
 
         def clear() -> None:
             self.destroy_timer(timer)

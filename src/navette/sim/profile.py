@@ -28,6 +28,7 @@ from navette.sim.sensor_specs import (
     SonarSensor,
 )
 from navette.sim.sensor_topics import has_bumper, topics_of
+from navette.sim.steering import link_poses
 
 _CORNERS = 12  # of the polygon drawn around a circle
 
@@ -35,7 +36,10 @@ Point2 = tuple[float, float]
 
 
 def footprint_of(model: Model) -> tuple[Point2, ...]:
-    """Convex outline of the solid geometry, from above, in the base frame."""
+    """Convex outline of the solid geometry, from above, in the base frame.
+
+    Steered wheels are contained at every angle.
+    """
     return convex_hull([(x, y) for x, y, _ in _solid_points(model)])
 
 
@@ -53,7 +57,8 @@ def _solid_points(model: Model) -> list[Vector3]:
         for link in model.links
         for geometry in link.geometries
         if geometry.collides
-        for point in _outline(geometry, base_T_model @ link.model_T_link)
+        for model_T_link in link_poses(model, link)
+        for point in _outline(geometry, base_T_model @ model_T_link)
     ]
 
 

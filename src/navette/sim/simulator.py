@@ -29,7 +29,6 @@ from navette.sim.drive import (
     SteeringRamp,
     make_ramp,
     rim_speed,
-    steering_angles,
 )
 from navette.sim.imu import Imu, ImuReading
 from navette.sim.instant import Instant
@@ -46,6 +45,7 @@ from navette.sim.sensor_specs import (
     Sensor,
 )
 from navette.sim.sensors import make_devices
+from navette.sim.steering import steering_angles
 from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz

@@ -7,12 +7,14 @@ so that a run whose results were saved seems to have failed. Such threads are
 - a thread in which a session closes: closing waits for links that are being opened, up
   to 10 s if the other process is stopped (Ctrl-Z) or the machine is busy;
 - daemon threads of a program that publishes, or creates publishers, in them;
-- Zenoh's threads while they deliver a sample or a change of the graph.
+- Zenoh's threads while they deliver a sample or a change of the graph;
+- a thread that collects garbage, in whatever function it is: it frees Zenoh's objects.
 
-The interpreter therefore waits.
+The interpreter therefore waits, and garbage is left to the end of the process.
 """
 
 import atexit
+import gc
 import os
 import sys
 import threading
@@ -46,10 +48,18 @@ def _wait_for_all() -> None:
     for thread in list(_inside):
         if thread.is_alive():
             thread.join()
+    gc.disable()
     for _ in range(round(_CALLS_S / _POLL_S)):
-        if not any(map(_is_call, sys._current_frames().values())):
+        if not (_is_collecting() or any(map(_is_call, sys._current_frames().values()))):
             return
         _skips_waiting.wait(_POLL_S)
+
+
+def _is_collecting() -> bool:
+    """Return whether a thread collects garbage: a second collection does nothing."""
+    before = gc.get_stats()[0]
+    gc.collect(0)
+    return gc.get_stats()[0] == before
 
 
 def _is_call(frame: FrameType | None) -> bool:

@@ -101,9 +101,13 @@ class ViewerNode(StageNode):
         asset_folders: Mapping[str, Path] | None = None,
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
         listeners: Listeners | None = None,
+        cli_args: Sequence[str] | None = None,
     ) -> None:
         super().__init__(
-            "viewer", context=context, parameter_overrides=parameter_overrides
+            "viewer",
+            context=context,
+            parameter_overrides=parameter_overrides,
+            cli_args=cli_args,
         )
         self._watched: dict[Watch, Subscription[Any]] = {}
         self._refreshing = False

@@ -14,7 +14,6 @@ try {
   await page.goto(url);
   const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 60_000 });
   await until(() => globalThis.navette?.connection.playback);
-  await page.evaluate(() => navette.open("playback"));
   const bar = page.locator(".playback-bar");
   await bar.waitFor();
   const place = async () => (await bar.locator("output").textContent()).split(" / ").map((text) => text.split(":").reduce((sum, part) => sum * 60 + Number(part), 0));
@@ -31,6 +30,10 @@ try {
     await bar.getByRole("combobox", { name: "Rate" }).selectOption(String(rate));
     await until((wanted) => navette.connection.playback.speed === wanted, rate);
   };
+  await page.keyboard.press(" ");
+  await status("Paused");
+  await page.keyboard.press(" ");
+  await status("Playing");
   await setRate(0.5);
 
   const slider = await bar.locator(".playback-slider").boundingBox();

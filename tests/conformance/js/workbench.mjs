@@ -2,10 +2,10 @@
 // run control, sizes and themes, a thumb on the stick, a page that hangs, keys in panels,
 // files that are saved and loaded, a server that ends and returns.
 //
-//   node workbench.mjs goals|panels|sizes|touch|hang|keys|files|restart http://127.0.0.1:PORT BROWSER FOLDER
+//   node workbench.mjs goals|panels|sizes|touch|hang|keys|files|restart|offline|measure http://127.0.0.1:PORT BROWSER FOLDER
 //
-// Prints what the page displays, and what axe finds; the part `restart` prints "end" and
-// waits for the line "back" on its input.
+// Prints what the page displays, and what axe finds; the parts `restart` and `offline` print
+// "end" or "start" for the server and wait for a line on their input.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
@@ -259,7 +259,7 @@ async function keys() {
 async function files() {
   // Plots and layouts are saved; a layout is loaded; what is refused says why where it was set.
   const page = await desktop();
-  await page.evaluate(() => navette.open("plot", { paths: ["/odom/filtered.twist.twist.linear.x"] }));
+  await page.evaluate(() => navette.open("plot", { paths: ["/odom/filtered.twist.twist.angular.z"] }));
   await until(page, () => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
   await page.waitForTimeout(500);
   const saved = async (name) => {
@@ -275,11 +275,11 @@ async function files() {
   const layout = await saved("Save to a file");
   await menu();
   await page.getByRole("button", { name: "Recordings" }).click();
-  await until(page, () => document.querySelector(".plot-value") === null);
+  await until(page, () => ![...document.querySelectorAll(".plot-name")].some(({ textContent }) => textContent.includes("angular.z")));
   await menu();
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Load from a file" }).click()]);
   await chooser.setFiles(layout);
-  await page.locator(".plot-name", { hasText: "/odom/filtered" }).first().waitFor();
+  await page.locator(".plot-name", { hasText: "angular.z" }).first().waitFor();
 
   await page.evaluate(() => navette.open("parameters"));
   await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
@@ -307,8 +307,59 @@ async function restart() {
   seen.problems = seen.problems.slice(0, problemsBefore); // refused connections meanwhile
 }
 
+async function offline() {
+  // The page opens while the server is away, says so, and works when the server is back.
+  const page = await desktop();
+  const session = await page.context().newCDPSession(page);
+  seen.manifest = (await session.send("Page.getAppManifest")).errors;
+  seen.installability = (await session.send("Page.getInstallabilityErrors")).installabilityErrors.map(({ errorId }) => errorId);
+  await page.evaluate(() => navigator.serviceWorker.ready);
+  await until(page, () => navigator.serviceWorker.controller !== null);
+  console.log("end");
+  const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
+  await lines.next();
+  const problemsBefore = seen.problems.length;
+  await page.reload();
+  await until(page, () => globalThis.navette?.connection.status.state === "lost");
+  await until(page, () => document.querySelector("#headline").textContent !== "Connecting");
+  seen.lost = [await page.textContent("#headline"), await page.textContent(".welcome strong")];
+  seen.axe.offline = await serious(page);
+  await picture(page, "offline");
+  console.log("start");
+  await lines.next();
+  await until(page, () => navette.connection.status.state === "live" && navette.connection.topics.has("/map"));
+  seen.problems = seen.problems.slice(0, problemsBefore); // refused connections meanwhile
+}
+
+async function measure() {
+  // Lengths by clicks, which add up, and by a drag; the view stays where it is.
+  const page = await desktop();
+  await until(page, () => navette.scene.fixedFrame !== null);
+  await page.keyboard.press("m");
+  await page.evaluate(() => {
+    navette.scene.viewing.setMode("free");
+    navette.scene.viewing.viewpoint.scale = 60;
+    navette.scene.invalidate();
+  });
+  const { x, y } = await page.locator(".scene-view canvas").boundingBox();
+  const perM = await page.evaluate(() => navette.scene.viewing.viewpoint.scale);
+  const length = () => page.evaluate(() => navette.tools.chosen.overlay().find(({ kind }) => kind === "label")?.text ?? null);
+  const [left, top] = [x + 300, y + 200];
+  for (const [dx, dy] of [[0, 0], [2, 0], [2, 1]]) await page.mouse.click(left + dx * perM, top + dy * perM);
+  seen.clicked = await length();
+  await page.mouse.move(left, top);
+  await page.mouse.down();
+  await page.mouse.move(left + 3 * perM, top + 4 * perM, { steps: 4 });
+  seen.dragging = await length();
+  await page.mouse.up();
+  seen.dragged = await length();
+  await picture(page, "measure");
+  await page.keyboard.press("Escape");
+  seen.after = await length();
+}
+
 try {
-  await { goals, panels, sizes, touch, hang, keys, files, restart }[part]();
+  await { goals, panels, sizes, touch, hang, keys, files, restart, offline, measure }[part]();
   console.log(JSON.stringify(seen));
 } finally {
   await browser.close();

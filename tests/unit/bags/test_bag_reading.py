@@ -56,6 +56,15 @@ def test_written_messages_are_read(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
+def test_a_recording_is_found_without_its_suffix(tmp_path: Path, suffix: str) -> None:
+    path = write_sample(tmp_path / f"subset.{suffix}", 3)
+    with open_bag(tmp_path / "subset") as reader:
+        assert reader.path == path
+    with pytest.raises(FileFormatError, match="subse: cannot be opened"):
+        open_bag(tmp_path / "subse")
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
 def test_time_ranges_and_topics(tmp_path: Path, suffix: str) -> None:
     with open_bag(write_sample(tmp_path / f"a.{suffix}", 50)) as reader:
         first, last = START_NS + 10 * STEP_NS, START_NS + 20 * STEP_NS

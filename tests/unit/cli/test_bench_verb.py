@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from navette.cli.app import app
-from navette.errors import InvalidValueError
+from navette.errors import InvalidValueError, UnknownNameError
 from navette.navigation.bench.trial import TrialResult
 
 GOOD = TrialResult(
@@ -83,3 +83,10 @@ def test_places_of_output_are_checked_before_driving(tmp_path: Path) -> None:
         missing = str(tmp_path / "missing" / "file")
         assert "does not exist" in refused(option, missing)
         assert "is a folder; name a file" in refused(option, str(tmp_path))
+
+
+def test_a_node_that_cannot_be_replaced_is_refused_before_its_file_is_read() -> None:
+    words = ["bench", "maze", "--worlds", "0", "--replace", "wheels=nowhere.py"]
+    ended = CliRunner().invoke(app, words)
+    with pytest.raises(UnknownNameError, match="unknown node to replace 'wheels'"):
+        raise ended.exception or AssertionError("no error")

@@ -71,6 +71,7 @@ def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
         RunProgress(
             goal=(1e308, -3.0), goal_id="2", state="goal_outside_map", failed=True
         ),
+        RunProgress(goal=None, goal_id="3", state="goal_not_finite", failed=True),
     ):
         screen.on_change(progress)
     lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
@@ -78,6 +79,7 @@ def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
         "→ goal (1.0, 2.0)",
         "✗ goal (1.0, 2.0) canceled",
         "✗ goal (1e+308, -3.0) goal_outside_map",
+        "✗ goal_not_finite",
     ]
     run = SimpleNamespace(progress=lambda: canceled, real_time_factor=lambda: 1.0)
     screen._console.print(screen._line(run))

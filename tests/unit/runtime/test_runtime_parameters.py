@@ -401,3 +401,12 @@ def test_the_error_of_a_callback_without_result_names_it(node: Node) -> None:
     with pytest.raises(AttributeError, match=r"check at .* returned None, expected"):
         node.set_parameters([Parameter("speed", value=2.0)])
     assert node.get_parameter("speed").value == 1.0
+
+
+def test_programs_read_the_private_table_of_parameters(node: Node) -> None:
+    node.declare_parameter("speed", 1.5)
+    assert node._parameters["speed"].value == 1.5  # type: ignore[attr-defined]
+    assert "speed" in node._descriptors  # type: ignore[attr-defined]
+    node._parameters = "a node's own"  # type: ignore[attr-defined]
+    assert node._parameters == "a node's own"  # type: ignore[attr-defined]
+    assert node.get_parameter("speed").value == 1.5

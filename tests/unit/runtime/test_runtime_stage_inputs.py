@@ -1,6 +1,7 @@
 """Messages that a stage cannot use: dropped, named, logged once, counted."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -249,3 +250,22 @@ def test_a_type_of_a_user_is_checked_by_its_parts() -> None:
     marker.pose.position.z = math.nan
     with pytest.raises(InvalidInputError, match=r"pose\.position\.x, y, z"):
         check(marker)
+
+
+class Thinned(Listener):
+    """Uses at most ten odometry messages a second."""
+
+    INPUTS = (replace(Listener.INPUTS[0], most_hz=10.0),)
+
+
+def test_a_fast_input_is_used_at_its_largest_rate_by_the_stamps() -> None:
+    with GraphHarness() as graph:
+        node = graph.add(Thinned(context=graph.context))
+        for k in range(10):  # stamps 0.02 s apart, all at once as after a delay
+            message = odometry(float(k))
+            message.header.stamp.nanosec = 20_000_000 * k
+            graph.publish("/odom", message)
+        graph.run_for(0.4)
+        used = [msg.pose.pose.position.x for msg in node.received]
+        assert used == [0.0, 4.0, 9.0], "the last of each period"
+        assert not node.is_stale("/odom")

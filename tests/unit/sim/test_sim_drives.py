@@ -4,16 +4,17 @@ import math
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from navette.errors import FileFormatError, InvalidValueError
-from navette.geometry import Pose2
-from navette.sim import load_robot, load_world
-from navette.sim.drive import steering_angles
+from navette.geometry import Footprint, Pose2
+from navette.sim import footprint_of, load_robot, load_world
 from navette.sim.params import SimParams
 from navette.sim.scene import AckermannDrive, Model, Scene
 from navette.sim.sdf import read_sdf
 from navette.sim.simulator import Simulator
+from navette.sim.steering import steering_angles
 
 LIMITS = {
     "racecar": SimParams(
@@ -106,6 +107,18 @@ def test_both_steered_wheels_turn_about_the_same_centre() -> None:
     half = drive.kingpin_width / 2
     assert math.tan(left) == pytest.approx(drive.wheel_base / (radius - half))
     assert math.tan(right) == pytest.approx(drive.wheel_base / (radius + half))
+
+
+@pytest.mark.parametrize("steering", [-0.41, 0.2, 0.41])
+def test_the_footprint_contains_the_steered_wheels(steering: float) -> None:
+    model = load_robot("racecar").model
+    assert isinstance(model.drive, AckermannDrive)
+    outline = Footprint(footprint_of(model))
+    angles = steering_angles(model.drive, steering)
+    for y, angle in zip((0.12065, -0.12065), angles, strict=True):
+        wheel = Pose2(0.3302, y, angle)
+        tyre = [(x, across) for x in (-0.049, 0.049) for across in (-0.017, 0.017)]
+        assert outline.contains(wheel.apply(np.array(tyre)), depth_m=1e-3).all()
 
 
 def test_commands_that_are_not_finite_have_no_effect() -> None:

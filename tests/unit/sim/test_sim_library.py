@@ -83,7 +83,9 @@ def test_every_robot_stands_in_every_world(robot: str, world: str) -> None:
     assert abs(simulator.pose().translation[2]) < 0.005
 
 
-@pytest.mark.parametrize("name", ["course", "husky", "jackal", "turtlebot3_burger"])
+@pytest.mark.parametrize(
+    "name", ["course", "husky", "jackal", "mecanum", "racecar", "turtlebot3_burger"]
+)
 def test_parameter_files_fit_the_robot(name: str) -> None:
     robot = load_robot(name)
     assert robot.params_file is not None

@@ -16,7 +16,14 @@ from navette.msgs.simulation_interfaces.srv import (
     StepSimulation,
 )
 from navette.msgs.std_msgs.msg import Empty
-from navette.runtime import ContextClock, PacedClock, SystemClock, VirtualClock
+from navette.msgs.std_srvs.srv import Empty as EmptySrv
+from navette.runtime import (
+    ContextClock,
+    PacedClock,
+    Parameter,
+    SystemClock,
+    VirtualClock,
+)
 from navette.sim import Scene, load_robot, load_world
 from navette.sim.node import SimNode
 from navette.testing import GraphHarness
@@ -32,9 +39,14 @@ def _scene() -> Scene:
 class Run:
     """A simulation that drives in a circle, and a caller of its services."""
 
-    def __init__(self, clock: ContextClock | None = None) -> None:
+    def __init__(
+        self, clock: ContextClock | None = None, localization: str = "truth"
+    ) -> None:
         self.graph = GraphHarness(clock=clock or VirtualClock())
-        self.sim = self.graph.add(SimNode(_scene(), context=self.graph.context))
+        located = [Parameter("localization", value=localization)]
+        self.sim = self.graph.add(
+            SimNode(_scene(), context=self.graph.context, parameter_overrides=located)
+        )
         publisher = self.graph.node.create_publisher(Twist, "/cmd_vel", 10)
         command = Twist(linear=Vector3(x=0.5), angular=Vector3(z=0.4))
         self.graph.node.create_timer(0.1, lambda: publisher.publish(command))
@@ -150,6 +162,24 @@ def test_after_a_reset_goal_estimate_and_maps_are_new() -> None:
     assert seen == ["canceled", "pose", "cleared"], "when the estimate is in use"
     run.spin_ms(1000)
     assert len(seen) == 3
+
+
+def test_after_a_reset_slam_begins_a_new_map_and_gets_no_pose() -> None:
+    run = Run(localization="slam")
+    seen = list[str]()
+
+    def restart(request: Any, response: Any) -> Any:
+        seen.append("restarted")
+        return response
+
+    run.graph.node.create_service(EmptySrv, "/slam/restart", restart)
+    run.graph.node.create_subscription(
+        PoseWithCovarianceStamped, "/initialpose", lambda _: seen.append("pose"), 10
+    )
+    run.spin_ms(1000)
+    run.call("reset_simulation", ResetSimulation)
+    run.spin_ms(500)
+    assert seen == ["restarted"]
 
 
 def test_stopped_is_paused_at_the_start() -> None:

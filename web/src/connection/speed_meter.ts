@@ -3,17 +3,22 @@
 const WINDOW_MS = 3000;
 /** Time that goes back by less is a late frame. */
 const BACK_NS = 50_000_000n;
+const TOGETHER_MS = 10;
 
 export class SpeedMeter {
   nowNs = 0n;
-  #samples: { ns: bigint; ms: number }[] = [];
+  #samples: { ns: bigint; ms: number; sinceMs: number }[] = [];
 
   /** Take the time at a wall time; true if time went back. */
   take(ns: bigint, ms: number): boolean {
     const isBack = ns + BACK_NS < this.nowNs;
     if (isBack) this.#samples = [];
     this.nowNs = ns;
-    this.#samples.push({ ns, ms });
+    // Samples that waited behind a slow frame arrive together: the newest of them waited least.
+    const last = this.#samples.at(-1);
+    const isTogether = last !== undefined && ms - last.sinceMs < TOGETHER_MS;
+    if (isTogether) this.#samples.pop();
+    this.#samples.push({ ns, ms, sinceMs: isTogether ? last.sinceMs : ms });
     while (this.#samples.length > 2 && ms - this.#samples[1]!.ms > WINDOW_MS) this.#samples.shift();
     return isBack;
   }

@@ -10,7 +10,6 @@ import "./log";
 import "./graph";
 import "./behavior_tree";
 import "./diagnostics";
-import "./playback";
 import "./report";
 import "./frames";
 import "./nodes";

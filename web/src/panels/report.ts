@@ -13,6 +13,8 @@ class ReportPanel implements PanelInstance {
   readonly #name = h("span", { class: "hint grow" });
   readonly #empty: HTMLElement;
   readonly #root = this.#page.attachShadow({ mode: "open" });
+  #report: Report | null = null;
+  readonly #endTheme: () => void;
 
   constructor(
     container: HTMLElement,
@@ -36,6 +38,11 @@ class ReportPanel implements PanelInstance {
     this.#bar.append(this.#name, choose());
     this.#bar.hidden = true;
     this.#page.hidden = true;
+    this.#root.addEventListener("click", (event) => {
+      const command = event.target instanceof HTMLButtonElement ? event.target.previousElementSibling : null;
+      if (command?.matches("code")) void this.#copy(command.textContent);
+    });
+    this.#endTheme = context.theme.onChange(() => this.#report?.setDark(context.theme.isDark));
   }
 
   setVisible(): void {
@@ -43,8 +50,19 @@ class ReportPanel implements PanelInstance {
   }
 
   dispose = (): void => {
+    this.#endTheme();
     this.#root.replaceChildren();
   };
+
+  /** The report's own script does it elsewhere. */
+  async #copy(command: string): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(command);
+      this.context.announce("Command copied");
+    } catch {
+      this.context.announce("The browser does not permit copying", "error");
+    }
+  }
 
   async #open(file: File): Promise<void> {
     let report: Report;
@@ -54,6 +72,8 @@ class ReportPanel implements PanelInstance {
       this.context.announce(`${file.name}: ${error instanceof Error ? error.message : String(error)}`, "error");
       return;
     }
+    this.#report = report;
+    report.setDark(this.context.theme.isDark);
     this.#root.adoptedStyleSheets = [report.styles];
     this.#root.replaceChildren(report.content);
     this.#page.hidden = false;

@@ -1,7 +1,7 @@
 /** Draws the scene from above on a canvas, without a graphics card. */
 
 import { apply, compose, yawOf, type Transform, type Vector } from "../transforms/transform";
-import { CloudPainter } from "./cloud_painter";
+import { CloudPainter, type PlacedCloud } from "./cloud_painter";
 import { convexHull } from "./hull";
 import { rgba, type Lines, type Points, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import { fitCanvas, type DrawItem, type Ray, type Renderer, type Viewpoint } from "./renderer";
@@ -37,10 +37,29 @@ export class CanvasRenderer implements Renderer {
     // Metres, y up.
     const [a, e] = [ratio * scale, ratio * (width / 2 - centre[0] * scale)];
     context.setTransform(a, 0, 0, -a, e, ratio * (height / 2 + centre[1] * scale));
-    for (const { part, fixed_T_part, opacity } of items) {
-      context.globalAlpha = opacity;
-      for (const primitive of part.primitives) this.#draw(primitive, fixed_T_part);
+    this.#drawAll(items);
+  }
+
+  /** In order; clouds that follow each other, such as those that decay, are one picture. */
+  #drawAll(items: readonly DrawItem[]): void {
+    let clouds: PlacedCloud[] = [];
+    let opacity = 1;
+    const paintClouds = (): void => {
+      if (clouds.length > 0) this.#clouds.paint(this.#context, clouds);
+      clouds = [];
+    };
+    for (const item of items) {
+      if (item.opacity !== opacity) paintClouds();
+      this.#context.globalAlpha = opacity = item.opacity;
+      for (const primitive of item.part.primitives) {
+        if (isCloud(primitive)) clouds.push({ points: primitive, fixed_T_points: item.fixed_T_part });
+        else {
+          paintClouds();
+          this.#draw(primitive, item.fixed_T_part);
+        }
+      }
     }
+    paintClouds();
   }
 
   ray({ centre, scale }: Viewpoint, px: number, py: number): Ray {
@@ -104,10 +123,6 @@ export class CanvasRenderer implements Renderer {
   #points(points: Points, pose: Transform): void {
     const context = this.#context;
     const count = points.positions.length / 3;
-    if (count > MANY_POINTS) {
-      this.#clouds.paint(context, points, pose);
-      return;
-    }
     const radius = points.sizePx / 2 / this.#scale;
     context.fillStyle = points.colour;
     const plane = planeOf(pose);
@@ -213,6 +228,10 @@ export class CanvasRenderer implements Renderer {
     context.fillText(text, 0, -6);
     context.restore();
   }
+}
+
+function isCloud(primitive: Primitive): primitive is Points {
+  return primitive.kind === "points" && primitive.positions.length > 3 * MANY_POINTS;
 }
 
 /** A function that turns the point at an index of the array to the plane. */

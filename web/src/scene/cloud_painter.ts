@@ -3,25 +3,31 @@
 import { apply, type Transform } from "../transforms/transform";
 import { rgba, type Points } from "./primitives";
 
+export interface PlacedCloud {
+  readonly points: Points;
+  readonly fixed_T_points: Transform;
+}
+
 export class CloudPainter {
   #image: ImageData | null = null;
   #pixels = new Uint32Array(0);
   #highest = new Float32Array(0);
-  #positions: Points["positions"] | null = null;
-  #colours: Points["colours"] = undefined;
+  #painted: readonly Points[] = [];
   #key = "";
   readonly #canvas = document.createElement("canvas");
 
-  /** Points that are painted already, in the same place, are only copied. */
-  paint(context: CanvasRenderingContext2D, points: Points, pose: Transform): void {
+  /** Clouds that are painted already, in the same places, are only copied. */
+  paint(context: CanvasRenderingContext2D, clouds: readonly PlacedCloud[]): void {
     const { width, height } = context.canvas;
     const { a: scale, e: left, f: top } = context.getTransform();
-    const key = [width, height, scale, left, top, points.sizePx, points.colour, ...pose.translation, ...pose.rotation].join(" ");
-    if (points.positions !== this.#positions || points.colours !== this.#colours || key !== this.#key) {
+    const places = clouds.map(({ points, fixed_T_points: { translation, rotation } }) => [points.sizePx, points.colour, ...translation, ...rotation].join(" "));
+    const key = [width, height, scale, left, top, ...places].join(" ");
+    const isSame = key === this.#key && clouds.every(({ points }, index) => points === this.#painted[index]);
+    if (!isSame) {
       this.#prepare(width, height);
-      this.#fill(points, pose, scale, left, top);
+      for (const { points, fixed_T_points } of clouds) this.#fill(points, fixed_T_points, scale, left, top);
       this.#canvas.getContext("2d")?.putImageData(this.#image!, 0, 0);
-      [this.#positions, this.#colours, this.#key] = [points.positions, points.colours, key];
+      [this.#painted, this.#key] = [clouds.map(({ points }) => points), key];
     }
     context.save();
     context.setTransform(1, 0, 0, 1, 0, 0);

@@ -6,6 +6,10 @@ import type { Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
 import type { Part } from "./primitives";
 
+/** Messages that remain by decay: at most so many, with so many coordinates in all. */
+const MOST_KEPT = 600;
+const MOST_KEPT_NUMBERS = 3_000_000;
+
 /** What a user may change; `null`: as the display decides. */
 export interface Look {
   /** Automatic: as the kind says, which may depend on 2D or 3D. */
@@ -62,7 +66,7 @@ export abstract class Display<T = unknown> {
   receivedMs: number | null = null;
   protected message: T | null = null;
   #parts: Part[] | null = null;
-  #kept: { parts: Part[]; untilMs: number }[] = [];
+  #kept: { parts: Part[]; untilMs: number; numbers: number }[] = [];
   #end: Dispose | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #expected: string;
@@ -209,7 +213,13 @@ export abstract class Display<T = unknown> {
       const frozen: Transform | null = transforms.lookUp(fixedFrame, part.frame);
       return frozen === null ? [] : [{ ...part, frozen }];
     });
-    this.#kept.push({ parts, untilMs: performance.now() + 1000 * this.look.decayS });
-    if (this.#kept.length > 600) this.#kept.shift();
+    this.#kept.push({ parts, untilMs: performance.now() + 1000 * this.look.decayS, numbers: numbersOf(parts) });
+    let numbers = this.#kept.reduce((sum, kept) => sum + kept.numbers, 0);
+    while (this.#kept.length > MOST_KEPT || numbers > MOST_KEPT_NUMBERS) numbers -= this.#kept.shift()!.numbers;
   }
+}
+
+function numbersOf(parts: readonly Part[]): number {
+  const sizes = parts.flatMap(({ primitives }) => primitives.map((each) => ("positions" in each ? each.positions.length : 0)));
+  return sizes.reduce((sum, size) => sum + size, 0);
 }

@@ -19,7 +19,7 @@ const ARROW_SIZE = { value: 16, low: 6, high: 60, unit: "px" };
 /** Types in the order of drawing. Clouds are large: they are subscribed to on request. */
 const KINDS: readonly [type: string, make: Maker, traits: Omit<DisplayTraits, "title">][] = [
   ["nav_msgs/msg/OccupancyGrid", GridMapDisplay, { order: 10, isShown: true, rateHz: 5, choices: { label: "Colours", values: ["map", "cost"] } }],
-  ["sensor_msgs/msg/PointCloud2", CloudDisplay, { order: 30, isShown: false, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 10, choices: { label: "Colour by", values: ["height", "intensity", "flat"] } }],
+  ["sensor_msgs/msg/PointCloud2", CloudDisplay, { order: 30, isShown: false, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 20, choices: { label: "Colour by", values: ["height", "intensity", "flat"] } }],
   ["sensor_msgs/msg/LaserScan", ScanDisplay, { order: 31, isShown: true, colour: "laser", size: POINT_SIZE, hasDecay: true, rateHz: 20 }],
   ["sensor_msgs/msg/Range", RangeDisplay, { order: 32, isShown: true, colour: "laser", size: LINE_SIZE, hasDecay: true, rateHz: 10 }],
   ["visualization_msgs/msg/MarkerArray", MarkersDisplay, { order: 35, isShown: true, every: true }],
@@ -43,6 +43,8 @@ function traitsOf(topic: string, type: string, has: (topic: string) => boolean):
     return { order, isShown: topic === "/map" || !has("/map"), opacity: isCost ? 0.7 : 1, choices: { label: "Colours", values } };
   }
   if (topic === "/plan" || topic === "/plan_smoothed") return { isShown: !has("/path") };
+  // Where the robot was, as SLAM corrects it: below the path, in the colour of the odometry's trail.
+  if (topic.endsWith("/trajectory") && type.endsWith("/Path")) return { order: 44, colour: "trail", size: { ...LINE_SIZE, value: 1.5 }, opacity: 0.7 };
   if (/trajector|rollout|candidates/.test(topic)) return { order: 49 };
   if (topic === "/amcl_pose" || topic.startsWith("/planner/") || topic.endsWith("/published_footprint")) return { isShown: false };
   // The goal has a mark of its own, and what people publish here is no state.

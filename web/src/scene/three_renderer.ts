@@ -15,12 +15,16 @@ import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeome
 import type { Transform } from "../transforms/transform";
 import { rgba, type Colour, type Label, type Lines, type Points as PointSet, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import type { DrawItem, Ray, Renderer, Viewpoint } from "./renderer";
+import { isSoftwareGl } from "./software_gl";
 
 const FIELD_DEG = 45;
 /** Slightly above what was drawn before, so that flat things do not flicker through each other. */
 const LAYER_M = 0.002;
 /** Pixels per metre at which signs have their size; they scale with the view. */
 const MOST_RATIO = 1.5;
+
+/** Of a cloud, if the processor draws: a point costs it about 1 µs in every frame. */
+const MOST_SOFTWARE_POINTS = 30_000;
 
 /** An object of three.js and what is freed with it. */
 interface Built {
@@ -32,6 +36,7 @@ interface Built {
 
 export class ThreeRenderer implements Renderer {
   readonly #gl: WebGLRenderer;
+  readonly #isSoftware = isSoftwareGl();
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD_DEG, 1, 0.1, 2000);
   readonly #built = new Map<Primitive, Built>();
@@ -42,7 +47,7 @@ export class ThreeRenderer implements Renderer {
     readonly canvas: HTMLCanvasElement,
     invalidate: () => void,
   ) {
-    this.#gl = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.#gl = new WebGLRenderer({ canvas, antialias: !this.#isSoftware, powerPreference: "high-performance" });
     this.#camera.up.set(0, 0, 1);
     this.#scene.add(new AmbientLight(0xffffff, 2));
     const sun = new DirectionalLight(0xffffff, 1.8);
@@ -125,7 +130,7 @@ export class ThreeRenderer implements Renderer {
   #objectOf(primitive: Primitive): Built | null {
     const known = this.#built.get(primitive);
     if (known) return known;
-    const built = build(primitive);
+    const built = build(this.#isSoftware && primitive.kind === "points" ? thinned(primitive, MOST_SOFTWARE_POINTS) : primitive);
     if (!built) return null;
     this.#built.set(primitive, built);
     this.#scene.add(built.object);
@@ -168,21 +173,39 @@ function rasterOf({ pose, widthM, heightM, columns, rows, pixels }: Raster): Bui
   return wrap(new Mesh(geometry, material), pose, [material]);
 }
 
+/** Every so many points. */
+function thinned(points: PointSet, most: number): PointSet {
+  const { positions, colours } = points;
+  const step = Math.ceil(positions.length / 3 / most);
+  if (step < 2) return points;
+  const count = Math.ceil(positions.length / 3 / step);
+  const fewer = new Float32Array(3 * count);
+  const fewerColours = colours && new Uint8Array(3 * count);
+  for (let index = 0; index < count; index++) {
+    const from = 3 * step * index;
+    fewer.set(positions.subarray(from, from + 3), 3 * index);
+    fewerColours?.set(colours!.subarray(from, from + 3), 3 * index);
+  }
+  return { ...points, positions: fewer, ...(fewerColours && { colours: fewerColours }) };
+}
+
 function pointsOf({ positions, colours, colour, sizePx }: PointSet): Built {
   const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
   const material = new PointsMaterial({ size: sizePx, sizeAttenuation: false });
   if (colours) {
-    const linear = new Float32Array(colours.length);
+    const linear = new Uint8Array(colours.length);
     const table = LINEAR;
     for (let index = 0; index < colours.length; index++) linear[index] = table[colours[index]!]!;
-    geometry.setAttribute("color", new BufferAttribute(linear, 3));
+    geometry.setAttribute("color", new BufferAttribute(linear, 3, true));
     material.vertexColors = true;
   } else paint(material, colour);
-  return wrap(new Points(geometry, material), null, [material]);
+  const cloud = new Points(geometry, material);
+  cloud.frustumCulled = false; // its bounds would cost more than drawing it
+  return wrap(cloud, null, [material]);
 }
 
-/** sRGB bytes as linear light. */
-const LINEAR = Float32Array.from({ length: 256 }, (_, byte) => new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r);
+/** sRGB bytes as linear light, in bytes. */
+const LINEAR = Uint8Array.from({ length: 256 }, (_, byte) => Math.round(255 * new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r));
 
 /** Lines of more than a pixel are strips of triangles: WebGL draws its own lines one pixel wide. */
 function linesOf({ positions, mode, colour, fill, widthPx }: Lines): Built {

@@ -5,6 +5,8 @@ import type { Viewpoint } from "./renderer";
 
 const LOWEST_SCALE = 0.5;
 const HIGHEST_SCALE = 1000;
+/** Extent of the smallest part that a fit shows: the first cells of a map are less. */
+const LEAST_M = 3;
 /** Part of the picture that a fit fills. */
 const FILL = 0.86;
 /** Part of the way to the fitted view that a frame goes. */
@@ -76,7 +78,7 @@ export class Viewing {
     const { viewpoint } = this;
     const share = this.#isPlaced ? EASE : 1;
     this.#isPlaced = true;
-    const most = FILL * Math.min(width / Math.max(right - left, 0.5), height / Math.max(high - low, 0.5));
+    const most = FILL * Math.min(width / Math.max(right - left, LEAST_M), height / Math.max(high - low, LEAST_M));
     const ratio = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, most)) / viewpoint.scale;
     const [dx, dy] = [(left + right) / 2 - viewpoint.centre[0], (low + high) / 2 - viewpoint.centre[1]];
     if (Math.abs(ratio - 1) < 0.002 && Math.hypot(dx, dy) * viewpoint.scale < 0.5) return;

@@ -47,6 +47,8 @@ export class Theme {
   #apply(): void {
     document.documentElement.dataset["theme"] = this.isDark ? "dark" : "light";
     this.#colours = new Map();
+    // The frame of an installed page.
+    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", this.colour("card"));
     for (const callback of this.#listeners) callback();
   }
 }

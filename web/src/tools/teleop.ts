@@ -19,7 +19,7 @@ export function takesKeys(element: EventTarget | null): boolean {
 }
 
 /** Whether Space is the element's own; a tab and a slider have other keys, and Stop comes first. */
-function takesSpace(element: EventTarget | null): boolean {
+export function takesSpace(element: EventTarget | null): boolean {
   if (!(element instanceof Element)) return false;
   return element.matches("input[type=checkbox]") || (takesKeys(element) && !element.matches("[role=tab], input[type=range]"));
 }

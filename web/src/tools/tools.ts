@@ -200,6 +200,8 @@ export class MeasureTool extends Tool {
   readonly hint = "Click points, or drag from one to another. Esc clears.";
   readonly key = "m";
   #points: Place[] = [];
+  /** Where the pointer went down: a click adds a point, a drag is a measurement of its own. */
+  #from: Place | null = null;
 
   tap(place: Place): void {
     this.#points.push(place);
@@ -207,21 +209,23 @@ export class MeasureTool extends Tool {
   }
 
   override beginDrag(place: Place): boolean {
-    this.#points = [place, place];
+    this.#from = place;
     return true;
   }
 
   override drag(place: Place): void {
-    this.#points[this.#points.length - 1] = place;
+    if (this.#from) this.#points = [this.#from, place];
     this.context.scene.invalidate();
   }
 
   override endDrag(place: Place): void {
     this.drag(place);
+    this.#from = null;
   }
 
   override cancel(): void {
     this.#points = [];
+    this.#from = null;
     super.cancel();
   }
 

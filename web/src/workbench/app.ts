@@ -18,6 +18,7 @@ import { forgetLayout, isLayout, rememberedLayout, rememberLayout, SHIPPED, type
 import { keepToken, LoginDialog, storedToken } from "./login";
 import type { HostContext } from "./panel_host";
 import { Phone } from "./phone";
+import { PlaybackBar } from "./playback_bar";
 import { menuItem, popover } from "./popover";
 import { SceneView } from "./scene_view";
 import { Shortcuts } from "./shortcuts";
@@ -57,7 +58,7 @@ export class App {
     this.connection.on("notice", ({ level, text }) => this.view.answer(text, level === "error"));
     const shortcuts = this.#shortcuts();
     this.#header.actions.append(...this.#actions(shortcuts));
-    document.body.append(this.#header.element, this.#center, shortcuts.dialog);
+    document.body.append(this.#header.element, this.#center, new PlaybackBar(this.connection).element, shortcuts.dialog);
     this.#login();
   }
 

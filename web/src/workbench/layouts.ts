@@ -71,7 +71,7 @@ export const SHIPPED: readonly Layout[] = [
     places: {
       left: panels("displays", "topics"),
       right: panels("raw", "image", "diagnostics"),
-      below: panels("playback", ["plot", { paths: SPEEDS }], "log"),
+      below: panels(["plot", { paths: SPEEDS }], "log"),
     },
     open: ["below"],
     docking: null,

@@ -81,7 +81,9 @@ export class Phone implements Arrangement {
 
   #drawState(): void {
     for (const button of this.#tabs.querySelectorAll<HTMLElement>("[data-kind]")) {
-      button.setAttribute("aria-expanded", String(button.dataset["kind"] === this.#shown));
+      const isShown = button.dataset["kind"] === this.#shown;
+      button.setAttribute("aria-expanded", String(isShown));
+      if (isShown) button.scrollIntoView({ block: "nearest", inline: "nearest" });
     }
   }
 }

@@ -138,16 +138,23 @@ describe("run control", () => {
 
 describe("reports", () => {
   it("contain nothing that runs or loads", () => {
-    const page = `<!doctype html><title>BARN</title><style>body{color:red} .body{x:y} a{background:url(http://x/y)}</style>
-      <body onload="x()"><h1 onclick="x()" style="position:fixed">Score</h1><script>x()</script><img src="http://x/y.png"><a href="javascript:x()">a</a><svg><use href="http://x"/><path d="M0 0"/></svg></body>`;
-    const { title, content, styles } = readReport(page);
+    const page = `<!doctype html><title>BARN</title><style>body{color:red} .body{x:y} @media (max-width: 9rem){p{color:red}} @media (prefers-color-scheme: dark){p{color:blue}} a{background:url(http://x/y)}</style>
+      <body onload="x()"><h1 onclick="x()" style="position:fixed;width:63%;background:url(http://x/z)">Score</h1><script>x()</script><img src="http://x/y.png"><a href="javascript:x()">a</a><svg><use href="http://x"/><path d="M0 0"/></svg></body>`;
+    const { title, content, styles, setDark } = readReport(page);
     const holder = document.createElement("div");
     holder.append(content);
     expect(title).toBe("BARN");
-    expect(holder.innerHTML).not.toMatch(/script|onclick|http|style=|<use/);
+    expect(holder.innerHTML).not.toMatch(/script|onclick|http|fixed|<use/);
+    expect(holder.querySelector("h1")!.style.width).toBe("63%");
     expect(holder.querySelector("h1")!.textContent).toBe("Score");
     expect(holder.querySelector("path")!.getAttribute("d")).toBe("M0 0");
     expect([...styles.cssRules].map((rule) => rule.cssText).join(" ")).not.toContain("http");
+    const dark = [...styles.cssRules].find((rule) => rule instanceof CSSMediaRule)!;
+    for (const [is, media] of [[true, "all"], [false, "not all"]] as const) {
+      setDark(is);
+      expect(dark.media.mediaText).toBe(media);
+    }
+    expect([...styles.cssRules].some((rule) => rule instanceof CSSContainerRule)).toBe(true);
   });
 
   it("are refused when they are empty", () => {

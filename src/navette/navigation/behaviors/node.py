@@ -5,6 +5,7 @@ and until the robot is at rest, then none. A new goal of any behavior preempts t
 active one.
 """
 
+from dataclasses import replace
 from typing import Any
 
 from navette.msgs import topics
@@ -32,7 +33,9 @@ class BehaviorNode(MotionNode):
 
     PARAMS = BehaviorParams
     INPUTS = (
-        *MotionNode.MOTION_INPUTS,
+        # Poses to place costmaps, also while no behavior is active.
+        replace(MotionNode.MOTION_INPUTS[0], most_hz=20.0),
+        *MotionNode.MOTION_INPUTS[1:],
         Input.of(
             topics.CMD_VEL_TELEOP,
             "commands of the operator, for assisted_teleop",

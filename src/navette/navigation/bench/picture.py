@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.bench.run import options_of, scene_of
+from navette.navigation.bench.run import options_of
 from navette.navigation.bench.trial import Trial
 from navette.navigation.stack.scene import resolve_scene
 from navette.sim import Simulator
@@ -15,5 +15,5 @@ def obstacle_outlines(trial: Trial) -> list[NDArray[np.float64]]:
     Raises:
         NavetteError: invalid world or robot.
     """
-    resolved = resolve_scene(options_of(trial), scene_of(trial.world))
+    resolved = resolve_scene(options_of(trial))
     return Simulator(resolved.scene, start=trial.start).outlines()

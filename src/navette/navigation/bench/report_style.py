@@ -28,7 +28,7 @@ dd small { display: block; font-size: .75rem; color: var(--soft); }
 .legend i { display: inline-block; width: .6rem; height: .6rem; border-radius: 50%;
   margin-right: .35rem; }
 i.good { background: var(--good); } i.bad { background: var(--accent); }
-.pair { display: grid; gap: 0 2rem; grid-template-columns: 1fr 1fr; }
+.pair { display: grid; gap: 0 2rem; grid-template-columns: repeat(2, minmax(0, 1fr)); }
 .scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line);
   border-radius: .6rem; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums;
@@ -62,7 +62,7 @@ button { font: inherit; font-size: .75rem; padding: .1rem .5rem; cursor: pointer
   color: var(--soft); background: none; border: 1px solid var(--line);
   border-radius: .35rem; min-width: 4rem; }
 button:hover, button:focus-visible { color: var(--ink); border-color: currentColor; }
-@media (max-width: 44rem) { .pair { grid-template-columns: 1fr; }
+@media (max-width: 44rem) { .pair { grid-template-columns: minmax(0, 1fr); }
   body { padding: 1.25rem 1rem; } dl { grid-template-columns: 1fr 1fr; }
   dl > div:last-child:nth-child(odd) { grid-column: span 2; }
   button { padding: .4rem .7rem; } }

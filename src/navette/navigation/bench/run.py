@@ -8,10 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.navigation.bench import moving_worlds
 from navette.navigation.bench.cpu import CpuMeter
-from navette.navigation.bench.dynabarn import dynabarn_scene
-from navette.navigation.bench.generators import generate
 from navette.navigation.bench.losses import detour_loss, lost_seconds
 from navette.navigation.bench.observer import TrialObserver
 from navette.navigation.bench.trial import Trial, TrialResult, barn_score
@@ -19,7 +16,6 @@ from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.programs import MakeNode
 from navette.navigation.stack.simulation import Simulation
 from navette.runtime import Stopwatch
-from navette.sim import Scene
 
 NodeLoader = Callable[[Mapping[str, str]], Mapping[str, MakeNode]]
 """Loads the user's node classes: node of the stack → class, as in a trial."""
@@ -38,7 +34,6 @@ def run_trial(trial: Trial, load_nodes: NodeLoader | None = None) -> TrialResult
     stopwatch = Stopwatch()
     simulation = Simulation(
         options_of(trial),
-        scene=scene_of(trial.world),
         replacements=_replacements(trial, load_nodes),
     )
     try:
@@ -78,7 +73,7 @@ def _replacements(
 def options_of(trial: Trial) -> RunOptions:
     """Return the options of the run: headless, as fast as possible."""
     return RunOptions(
-        world=trial.world if scene_of(trial.world) is None else "empty",
+        world=trial.world,
         robot=trial.robot,
         start=trial.start,
         goals=trial.goals,
@@ -90,17 +85,6 @@ def options_of(trial: Trial) -> RunOptions:
         parameters=trial.parameters,
         max_time_s=trial.limit_s,
     )
-
-
-def scene_of(world: str) -> Scene | None:
-    """Return the world of a suite (``KIND:SEED``, …); None for a name or a file."""
-    dynamic = dynabarn_scene(world)
-    if dynamic is not None:
-        return dynamic
-    kind, _, seed = world.partition(":")
-    if kind == moving_worlds.KIND:
-        return moving_worlds.moving_scene(int(seed))
-    return generate(kind, int(seed)).scene if seed.isdigit() else None
 
 
 def _measure(

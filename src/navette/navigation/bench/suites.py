@@ -6,15 +6,15 @@ from pathlib import Path
 
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.geometry import Footprint, Pose2
-from navette.navigation.bench import moving_worlds
 from navette.navigation.bench.barn import barn_trials
 from navette.navigation.bench.dynabarn import FILE as DYNABARN_FILE
 from navette.navigation.bench.dynabarn import dynabarn_trial, dynabarn_trials
-from navette.navigation.bench.generators import GENERATORS, generate
-from navette.navigation.bench.shortest import shortest_around
 from navette.navigation.bench.trial import Trial
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
+from navette.navigation.worlds import moving_worlds
+from navette.navigation.worlds.generators import GENERATORS, generate
+from navette.navigation.worlds.shortest import shortest_around
 from navette.sim import Simulator, footprint_of
 
 SUITES = ("barn", "dynabarn", "course", "random", *GENERATORS, moving_worlds.KIND)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.navigation.control.drive_models import (
     ACKERMANN,
     FORWARD,
@@ -19,7 +19,9 @@ from navette.navigation.control.drive_models import (
     SIDE,
     TURN_RATE,
 )
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.rollouts import move
+from navette.navigation.grids import inside_discs
 
 Array = NDArray[np.float64]
 Array32 = NDArray[np.float32]
@@ -33,6 +35,30 @@ _CLEARANCE_WEIGHT = 30.0
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 _SPAN_S = 2.5
 _STEP_S = 0.1
+# What is added to the radius of a moving obstacle to take its returns out of the static
+# obstacles, and to the robot's distance to stop to leave them in.
+_RETURNS_M = 0.2
+_NEAR_M = 0.05
+
+
+def counts_as_static(
+    points: Array, discs: Array, pose: Pose2, speed_mps: float, params: ControlParams
+) -> NDArray[np.bool_]:
+    """Return (N,) which measured points (N, 2) are obstacles where they are.
+
+    All but the returns of moving obstacles, which are avoided where they will be.
+    Within the distance that the robot requires to stop, the returns of receding ones
+    count, too: a surface of which more and more is seen looks as if it receded.
+    """
+    speed = abs(speed_mps)
+    stop_m = speed * (params.reaction_s + speed / (2 * params.deceleration_mps2))
+    body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
+    near_m = body_m + stop_m + _NEAR_M
+    near = np.hypot(points[:, 0] - pose.x, points[:, 1] - pose.y) <= near_m
+    away = (discs[:, 0] - pose.x) * discs[:, 2] + (discs[:, 1] - pose.y) * discs[:, 3]
+    receding = inside_discs(points, discs[away > 0], _RETURNS_M)
+    coming = inside_discs(points, discs[away <= 0], _RETURNS_M)
+    return np.asarray(~coming & (near | ~receding))
 
 
 @kernel(nogil=True, fastmath=True)

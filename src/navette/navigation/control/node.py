@@ -25,6 +25,7 @@ from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.explanations import Situation
 from navette.navigation.control.followers import make_follower
 from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap
+from navette.navigation.control.moving_obstacles import counts_as_static
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
     PAUSED,
@@ -42,7 +43,6 @@ from navette.navigation.grids import (
     NO_DISCS,
     MovingDiscs,
     discs_from_message,
-    inside_discs,
 )
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.stall_monitor import StallMonitor
@@ -55,10 +55,8 @@ from navette.runtime.stage.stage_node import Input, Output
 from navette.runtime.stage.status import status_output
 
 _NEVER = -(1 << 62)
-# Age of the moving obstacles from which they are obsolete, and what is added to their
-# radius to take their returns out of the static obstacles.
+# Age of the moving obstacles from which they are obsolete.
 _MOVING_TIMEOUT_S = 0.5
-_MOVING_MARGIN_M = 0.2
 # Status of a planner before its first goal.
 _NO_GOAL_YET = "waiting_for_goal"
 
@@ -424,8 +422,11 @@ class ControlNode(MotionNode):
         if obstacles is not None and self._obstacles.placed_ns is not None:
             moving = self._moving.at(self._now_ns, _MOVING_TIMEOUT_S)
             if len(moving):
-                still = ~inside_discs(obstacles.points, moving, _MOVING_MARGIN_M)
-                obstacles = obstacles._replace(points=obstacles.points[still])
+                here = self._tracker.predicted_now(self._now_ns) or UNKNOWN_POSE
+                speed = math.hypot(self._tracker.velocity[0], self._tracker.side_speed)
+                points = obstacles.points
+                kept = counts_as_static(points, moving, here, speed, self.params)
+                obstacles = obstacles._replace(points=points[kept])
             self._follower.set_obstacles(*obstacles)
             self._placed_ns = self._obstacles.placed_ns
 

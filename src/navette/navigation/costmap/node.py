@@ -20,7 +20,6 @@ from navette.navigation.costmap.layers import (
 )
 from navette.navigation.costmap.own_costmap import make_costmap
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_selection import ScanSelection
 from navette.navigation.costmap.servers.obstacle_sources import (
     ObstacleSources,
     declare_layer,
@@ -36,6 +35,7 @@ from navette.navigation.grids import (
 from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
 from navette.params.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.stamp_selection import StampSelection
 
 
 class CostmapNode(StageNode):
@@ -83,7 +83,7 @@ class CostmapNode(StageNode):
             self._sources = ObstacleSources(self, self._layer_settings, self.params)
         self._costmap = make_costmap(self.params)
         self._costmap.warm_up()
-        self._selection = ScanSelection(self.params.rate_hz)
+        self._selection = StampSelection(self.params.rate_hz)
         self._fault = ""  # newest of the user's method, or of a source
         self._newest: OccupancyGrid | None = None
         source = CostmapSource(
@@ -117,6 +117,9 @@ class CostmapNode(StageNode):
 
     def on_scan(self, msg: LaserScan) -> None:
         """Publish the costmap of a selected scan."""
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if not self._selection.takes(stamp_ns):
+            return
         scan = PlanarScan(
             np.asarray(msg.ranges),
             msg.angle_min,
@@ -124,9 +127,6 @@ class CostmapNode(StageNode):
             msg.range_min,
             msg.range_max,
         )
-        stamp_ns = stamp_to_ns(msg.header.stamp)
-        if not self._selection.takes(stamp_ns):
-            return
         frame_id = msg.header.frame_id
         obstacles = None
         if self._sources is not None:
@@ -185,4 +185,4 @@ class CostmapNode(StageNode):
         if self._sources is not None:
             self._sources.configure(self.params)
         if self.params.rate_hz != old.rate_hz:
-            self._selection = ScanSelection(self.params.rate_hz)
+            self._selection = StampSelection(self.params.rate_hz)

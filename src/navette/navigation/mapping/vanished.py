@@ -10,12 +10,12 @@ several sides, in scans from any place, leave no direction: the obstacle is gone
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
+from navette.files.kernels import kernel
 from navette.navigation.grids import RowSpans, padded_sparse, sparse_zeros
 
 Points = NDArray[np.float64]
@@ -108,10 +108,31 @@ def behind(points: Points, sensor: tuple[float, float]) -> Points:
 
 def have_echo(points: Points, hits: Points) -> Flags:
     """Return (M,) whether an echo may be of the obstacle at each point."""
-    if len(hits) == 0 or len(points) == 0:
-        return np.zeros(len(points), np.bool_)
-    away, _ = cKDTree(hits).query(points, distance_upper_bound=_SAME_M)
-    return np.asarray(np.isfinite(away))
+    found: Flags = _are_near(points, hits[np.argsort(hits[:, 0])], _SAME_M)
+    return found
+
+
+@kernel
+def _are_near(points: Any, others: Any, reach: float) -> Any:
+    """Return (M,) whether one of the others (N, 2), sorted by x, is within reach."""
+    near = np.zeros(points.shape[0], np.bool_)
+    for i in range(points.shape[0]):
+        x, y = points[i, 0], points[i, 1]
+        first, end = 0, others.shape[0]
+        while first < end:
+            middle = (first + end) // 2
+            if others[middle, 0] < x - reach:
+                first = middle + 1
+            else:
+                end = middle
+        for j in range(first, others.shape[0]):
+            dx, dy = others[j, 0] - x, others[j, 1] - y
+            if dx > reach:
+                break
+            if dx * dx + dy * dy < reach * reach:
+                near[i] = True
+                break
+    return near
 
 
 class Beams(NamedTuple):

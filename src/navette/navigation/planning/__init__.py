@@ -5,6 +5,7 @@ from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Plan, Planner
+from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.reports import (
     NavigatorReport,
     Phase,
@@ -17,6 +18,7 @@ __all__ = [
     "Planner",
     "Goal",
     "Plan",
+    "NewMap",
     "Outcome",
     "Navigator",
     "RobotMotion",

@@ -24,7 +24,7 @@ from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.planning_grid import NO_HITS
-from navette.navigation.planning.received_map import MapPart, ReceivedMap
+from navette.navigation.planning.received_map import MapPart, NewMap, ReceivedMap
 
 # Age of the moving obstacles from which they are obsolete.
 _MOVING_TIMEOUT_S = 0.5
@@ -49,7 +49,7 @@ class MapChange(NamedTuple):
             self.received.share()
         changed = self.received.update(self.part)
         cells, spec = self.received.cells, self.received.spec
-        navigator.set_map(cells, spec, self.hits, changed)
+        navigator.set_map(NewMap(cells, spec, self.hits, changed))
 
 
 class MapInputs:
@@ -123,7 +123,8 @@ class MapInputs:
     def restore(self, navigator: Navigator) -> None:
         """Give a new navigator the map and zones that arrived so far."""
         if self._map is not None:
-            navigator.set_map(self._map.cells, self._map.spec, self._newest_hits())
+            known = self._map
+            navigator.set_map(NewMap(known.cells, known.spec, self._newest_hits()))
         if self._zones is not None:
             navigator.keep_out(self._zones)
 

@@ -12,10 +12,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
-from navette.navigation.grids import CellWindow, GridSpec
 from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
@@ -24,8 +22,8 @@ from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_progress import PathProgress
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Plan, Planner
-from navette.navigation.planning.planning_grid import NO_HITS
 from navette.navigation.planning.progress_checker import ProgressChecker
+from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.reports import (
     NavigatorReport,
     Phase,
@@ -59,8 +57,7 @@ class Navigator:
         self.params = params
         self.planner = Planner(params)
         self.report = NavigatorReport()
-        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
-        self._hits = NO_HITS
+        self._map: NewMap | None = None
         self._avoided = AvoidedPlaces()
         self._zones: KeepOutZones | None = None
         self._has_map = False
@@ -87,31 +84,18 @@ class Navigator:
         other._checker = copy.copy(self._checker)
         return other
 
-    def set_map(
-        self,
-        occupancy: NDArray[np.int8],
-        spec: GridSpec,
-        hits: NDArray[np.float64] = NO_HITS,
-        changed: CellWindow | None = None,
-    ) -> None:
-        """Replace the map (H, W); the next step checks the path against it.
+    def set_map(self, new: NewMap) -> None:
+        """Replace the map; the next step checks the path against it."""
+        self._map = new._replace(changed=None)
+        self._apply_map(new)
 
-        Args:
-            occupancy: the array may be that of the last call.
-            spec: its geometry.
-            hits: (N, 2), map frame, m: where beams ended within its lethal cells.
-            changed: the cells that changed since the last call; None: not known.
-        """
-        self._map, self._hits = (occupancy, spec), hits
-        self._apply_map(changed)
-
-    def _apply_map(self, changed: CellWindow | None = None) -> None:
-        if self._map is not None:
-            occupancy, spec = self._map
-            marked = self._avoided.marked(occupancy, spec)
+    def _apply_map(self, new: NewMap | None = None) -> None:
+        new = self._map if new is None else new
+        if new is not None:
+            marked = self._avoided.marked(new.cells, new.spec)
             if self._zones is not None:
-                marked = self._zones.marked(marked, spec)
-            self.planner.set_map(marked, spec, self._hits, changed)
+                marked = self._zones.marked(marked, new.spec)
+            self.planner.set_map(new._replace(cells=marked))
             self._has_map = self._map_changed = True
 
     def keep_out(self, zones: KeepOutZones) -> None:

@@ -94,6 +94,7 @@ class PlannerNode(StageNode):
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
+            most_hz=20.0,
         ),
         Input.of(
             topics.KEEPOUT_ZONES,

@@ -107,7 +107,7 @@ class OwnPlan:
         returned = own_call(self._name, self._method.plan, grid, start, goal)
         if returned is None or (hasattr(returned, "__len__") and not len(returned)):
             return None
-        expected = "poses (N, 3) x, y, yaw or points (N, 2) in metres, map; None: none"
+        expected = "poses (N, 3) x, y, yaw or points (N, 2), m, map; None: no path"
         path = checked_array(self._name, returned, expected, _is_path)
         self._check_ends(path, goal)
         if path.shape[1] == 3:

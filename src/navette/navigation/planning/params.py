@@ -8,6 +8,8 @@ from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.shared_params import BendParams
 from navette.params import param
 
+LEAST_EXPANSIONS = 100
+
 
 @dataclass(frozen=True, kw_only=True)
 class PlannerParams(BendParams):
@@ -101,7 +103,7 @@ class PlannerParams(BendParams):
         160_000,
         "largest number of poses that the search with headings expands, where a body "
         "that turns in place fits through",
-        at_least=100,
+        at_least=LEAST_EXPANSIONS,
         at_most=1_000_000,
     )
 

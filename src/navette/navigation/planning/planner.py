@@ -5,10 +5,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path
@@ -20,12 +19,9 @@ from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses, turn_in_place
 from navette.navigation.planning.plan import Plan, cost_of
-from navette.navigation.planning.planning_grid import (
-    NO_HITS,
-    BodyShape,
-    PlanningGrid,
-)
+from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.prepared_map import PreparedMap
+from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.route import GridRouter
 from navette.navigation.planning.tight_places import (
     TightPlanner,
@@ -72,18 +68,12 @@ class Planner:
         other = Planner(params)
         other.put_down_at = self.put_down_at
         if not self.map.is_empty:
-            other.set_map(self.map.cells, self.map.spec, self.map.hits)
+            other.set_map(NewMap(self.map.cells, self.map.spec, self.map.hits))
         return other
 
-    def set_map(
-        self,
-        occupancy: NDArray[np.int8],
-        spec: GridSpec,
-        hits: NDArray[np.float64] = NO_HITS,
-        changed: CellWindow | None = None,
-    ) -> None:
-        """Replace the map; see :meth:`PreparedMap.receive`."""
-        self.map.receive(occupancy, spec, hits, changed)
+    def set_map(self, new: NewMap) -> None:
+        """Replace the map."""
+        self.map.receive(new)
 
     @property
     def body(self) -> BodyShape:
@@ -100,7 +90,7 @@ class Planner:
         spec = GridSpec(reach / 4, 40, 40)
         own = PLANNERS.load(self.params.method).is_own  # is called for goals only
         other = Planner(replace(self.params, method="a_star") if own else self.params)
-        other.set_map(np.zeros(spec.shape, np.int8), spec)
+        other.set_map(NewMap(np.zeros(spec.shape, np.int8), spec))
         start, goal = Pose2(4 * reach, 5 * reach, 0.0), Goal(6 * reach, 5.1 * reach)
         other.plan(start, goal)
         unseen = other.map.unseen(start)

@@ -28,6 +28,7 @@ from navette.navigation.planning.planning_grid import (
     without_obstacles_in,
 )
 from navette.navigation.planning.planning_map import PlanningMap
+from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.traversal import LETHAL
 
 
@@ -102,29 +103,16 @@ class PreparedMap:
         assert self._map is not None, "a map comes first"
         return self._map
 
-    def receive(
-        self,
-        occupancy: NDArray[np.int8],
-        spec: GridSpec,
-        hits: NDArray[np.float64] = NO_HITS,
-        changed: CellWindow | None = None,
-    ) -> None:
-        """Replace the map (H, W): −1 unknown, 0 free … 100 occupied.
-
-        Args:
-            occupancy: the array may be that of the last call.
-            spec: its geometry.
-            hits: (N, 2), map frame, m: where beams ended within its lethal cells.
-            changed: the cells that changed since the last call; None: not known.
-        """
-        self._fit_body_to(spec.resolution)
-        self.hits = hits
+    def receive(self, new: NewMap) -> None:
+        """Replace the map."""
+        self._fit_body_to(new.spec.resolution)
+        self.hits = new.hits
         self._moved.clear()
         window = None
         if self._map is None:
-            self._map = PlanningMap(occupancy, spec)
+            self._map = PlanningMap(new.cells, new.spec)
         else:
-            window = self._map.receive(occupancy, spec, changed)
+            window = self._map.receive(new.cells, new.spec, new.changed)
         if window is None:
             self._grids.clear()
             self._some_cost_fell = True

@@ -1,26 +1,41 @@
 """Plan where no path was found on the map's own cells: finer cells, or a proof.
 
 The steps: cut out the map in cells of 2.5 cm, prove that no path exists, search through
-gaps with a part of the budget, and search with all of it only where a path may exist.
+gaps with a part of the budget, search with all of it only where a path may exist, and
+try all motions on a fine grid.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import UNKNOWN, exact_clearances, make_outline
+from navette.navigation.grids import (
+    UNKNOWN,
+    exact_clearances,
+    make_obstacles,
+    make_outline,
+)
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
+from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal
-from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
+from navette.navigation.planning.path_shape import (
+    Poses,
+    directions,
+    joined,
+    turn_in_place,
+)
 from navette.navigation.planning.plan import Plan
 from navette.navigation.planning.planning_grid import BodyShape
 from navette.navigation.planning.prepared_map import PreparedMap
+from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.route import GridRouter
 
 # Searches on the map's own cells, and through gaps, get this part of the budget.
@@ -32,7 +47,7 @@ _SWAY_M, _LEAST_M = 0.01, 0.025
 
 def quick_expansions(params: PlannerParams) -> int:
     """Return the budget of a search before the proof that no path exists."""
-    return params.max_expansions // _QUICK_SHARE
+    return max(LEAST_EXPANSIONS, params.max_expansions // _QUICK_SHARE)
 
 
 def tight_margin_m(params: PlannerParams) -> float:
@@ -87,28 +102,87 @@ class TightPlanner:
             found = self._search(body.loose(slack), margin, budget, reached)
         if found.outcome is not Outcome.SEARCH_LIMIT:
             return found
-        why = self.why_impossible(margin)
-        return found if why is None else replace(found, outcome=Outcome.NO_PATH)
+        return self._exhaustive(found, margin)
 
-    def why_impossible(self, margin_m: float | None = None) -> Outcome | None:
+    def why_impossible(self) -> Outcome | None:
         """Return why no motion of the body reaches the goal; None if one may exist.
 
         A goal lies inside an obstacle if obstacles enclose all space around it that the
         body could move in, and no beam has measured any of it.
         """
-        return self._reached(margin_m)[1]
+        return self._reached(None)[1]
+
+    def _exhaustive(self, found: Plan, margin_m: float) -> Plan:
+        """Return a path by all motions on a fine grid, or that there is none.
+
+        These paths are rough, of shorter motions than the search has, and off the
+        cells' centres: they need only the least margin in the end. The first attempt
+        keeps the margin wherever in a cell the robot is. ``found`` remains where the
+        motions are too many.
+        """
+        within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
+        cells = self._ends()
+        for more_m in (within_cell_m, 0.0):
+            space = self._space(margin_m + more_m)
+            # Where the robot stands it may have less, and keeps that.
+            space.open_near_start(self._space(0.0), self._map.body.circumscribed_m)
+            if not self.params.allow_unknown:
+                space.close(self._closer.occupancy == UNKNOWN)
+            if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
+                continue
+            drive, radius_m = self.params.drive, self.params.min_turning_radius_m
+            driven = space.driven(drive, radius_m)
+            if driven is None:
+                return found
+            yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
+            poses = driven.path_to(cells, yaw, tolerance)
+            least = min(margin_m, _LEAST_M)
+            rough = None if poses is None else self._rough_plan(poses, least)
+            if rough is not None:
+                return replace(rough, expansions=found.expansions)
+        return replace(found, outcome=Outcome.NO_PATH)
+
+    def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:
+        """Return the plan of poses from all motions, if the body fits along them."""
+        if self.goal.yaw is not None and self.params.turns_in_place:
+            x, y, yaw = poses[-1].tolist()
+            poses = joined(poses, turn_in_place(x, y, yaw, self.goal.yaw))
+        prepared = self._prepared(None, None)
+        grid = prepared.opened(margin_m, self.start)
+        if not check_path(poses, grid, prepared.body).fits:
+            return None
+        if not self._backs_up_into_seen(poses, prepared):
+            return None
+        return self._planner(prepared).planned(self.goal, poses, margin_m)
+
+    def _backs_up_into_seen(self, poses: Poses, prepared: PreparedMap) -> bool:
+        """Return whether the body enters no unseen space in reverse."""
+        unseen = prepared.unseen(self._put_down_at or self.start)
+        reverse = poses[1:][directions(poses) < 0]
+        depth = exact_clearances(
+            make_obstacles(unseen, prepared.spec),
+            make_outline(self._map.footprint),
+            reverse,
+            0.0,
+        )
+        return bool((depth >= -0.5 * prepared.spec.resolution).all())
+
+    def _ends(self) -> NDArray[np.int64]:
+        """Return the cells (N, 2) at which a path may end."""
+        goal_xy, reach_m = (self.goal.x, self.goal.y), path_end_reach_m(self.params)
+        return cells_near(self._closer.spec, goal_xy, reach_m)[0]
+
+    def _space(self, margin_m: float | None) -> BodySpace:
+        occupancy, spec = self._closer.occupancy, self._closer.spec
+        lethal, body = occupancy >= self.params.lethal_cost, self._map.footprint
+        return BodySpace(lethal, spec, body, self.start, margin_m=margin_m)
 
     def _reached(
         self, margin_m: float | None
     ) -> tuple[NDArray[np.bool_], Outcome | None]:
         """Return (H, W) where the body can be; see :meth:`why_impossible`."""
-        occupancy, spec = self._closer.occupancy, self._closer.spec
-        lethal = occupancy >= self.params.lethal_cost
-        space = BodySpace(
-            lethal, spec, self._map.footprint, self.start, margin_m=margin_m
-        )
-        goal_xy = self.goal.x, self.goal.y
-        cells, _ = cells_near(spec, goal_xy, path_end_reach_m(self.params))
+        occupancy, space = self._closer.occupancy, self._space(margin_m)
+        cells = self._ends()
         reached = space.reached_from(np.array([space.start]))
         if reached[tuple(cells.T)].any():
             return reached, None
@@ -133,10 +207,18 @@ class TightPlanner:
         max_expansions: int,
         within: NDArray[np.bool_] | None = None,
     ) -> Plan:
-        prepared = PreparedMap(self.params, body, within=within)
-        prepared.receive(self._closer.occupancy, self._closer.spec, self._map.hits)
-        router = GridRouter(self.params, centres=True)
-        planner = MarginPlanner(self.params, prepared, router, self._put_down_at)
+        planner = self._planner(self._prepared(body, within))
         return planner.plan(
             margin_m, self.start, self.goal, max_expansions=max_expansions
         )
+
+    def _prepared(
+        self, body: BodyShape | None, within: NDArray[np.bool_] | None
+    ) -> PreparedMap:
+        prepared = PreparedMap(self.params, body, within=within)
+        prepared.receive(NewMap(*self._closer, self._map.hits))
+        return prepared
+
+    def _planner(self, prepared: PreparedMap) -> MarginPlanner:
+        router = GridRouter(self.params, centres=True)
+        return MarginPlanner(self.params, prepared, router, self._put_down_at)

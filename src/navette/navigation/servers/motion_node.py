@@ -98,7 +98,7 @@ class MotionNode(StageNode):
 
     @property
     def _now_ns(self) -> int:
-        return self.get_clock().now_ns
+        return self._clock.now_ns
 
     @property
     def _odometry_timeout_s(self) -> float:

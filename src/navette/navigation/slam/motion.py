@@ -55,9 +55,10 @@ class MotionModel:
         self._stamp_ns = stamp_ns
         motion = self.steady()
         if before is not None and odom_T_base is not None:
-            measured = before.inverse() @ odom_T_base
-            if math.hypot(measured.x, measured.y) < _JUMP_M + _JUMP_MPS * self._seconds:
-                motion = ScanMotion(measured, motion_covariance(measured, self.params))
+            measured = _between(before, odom_T_base, self.params)
+            away = math.hypot(measured.pose.x, measured.pose.y)
+            if away < _JUMP_M + _JUMP_MPS * self._seconds:
+                motion = measured
         if yaw_before is not None and yaw is not None:
             turn = angle_difference(yaw, yaw_before)
             covariance = motion.covariance.copy()
@@ -66,6 +67,10 @@ class MotionModel:
             pose = Pose2(motion.pose.x, motion.pose.y, turn)
             motion = ScanMotion(pose, covariance)
         return motion
+
+    def by_odometry(self, odom_T_base: Pose2) -> ScanMotion:
+        """Return the motion since the last step; the step itself is not made."""
+        return _between(self._odometry or odom_T_base, odom_T_base, self.params)
 
     def steady(self) -> ScanMotion:
         """Return the motion of the last step at the velocity before it."""
@@ -81,6 +86,11 @@ class MotionModel:
         """Store the motion of the last step as it was found by matching."""
         if self._seconds > 0.0:
             self._velocity = Pose2(*(value / self._seconds for value in motion))
+
+
+def _between(before: Pose2, after: Pose2, params: SlamParams) -> ScanMotion:
+    measured = before.inverse() @ after
+    return ScanMotion(measured, motion_covariance(measured, params))
 
 
 def motion_covariance(motion: Pose2, params: SlamParams) -> Matrix3:

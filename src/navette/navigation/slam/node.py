@@ -12,24 +12,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from navette.errors import InvalidInputError, InvalidValueError
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3
-from navette.geometry.map_files import OccupancyMap, write_occupancy_map
+from navette.geometry.map_files import OccupancyMap
 from navette.geometry.messages import header, transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
-from navette.msgs.nav2_msgs.srv import SaveMap
-from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMsg
 from navette.msgs.sensor_msgs.msg import LaserScan
-from navette.msgs.std_srvs.srv import Empty as EmptySrv
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import grid_to_message, upward_of
 from navette.navigation.servers.lifecycle import StageLifecycle
-from navette.navigation.slam.graph_file import SUFFIX, read_graph, write_graph
+from navette.navigation.slam.graph_file import read_graph
 from navette.navigation.slam.messages import planar_scan
 from navette.navigation.slam.params import MAPPING, SlamParams
 from navette.navigation.slam.rendering import MapRenderer
+from navette.navigation.slam.scan_graph import ScanGraph
+from navette.navigation.slam.servers.map_services import MapSession, SlamMapServices
 from navette.navigation.slam.slam import Slam, SlamEstimate
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.attitude import AttitudeTracker
@@ -95,8 +95,18 @@ class SlamNode(StageNode):
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._start()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
-        self.create_service(SaveMap, "slam/save_map", self.on_save_map)
-        self.create_service(EmptySrv, "slam/restart", self.on_restart)
+        session = MapSession(
+            params=lambda: self.params,
+            graph=lambda: self._slam.graph,
+            render=self._render,
+            message=self._map_message,
+            load=self._continue,
+            empty=self._empty,
+            restart=self._start,
+            pause=self._pause,
+            is_paused=lambda: self._is_paused,
+        )
+        self._services = SlamMapServices(self, session)
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Place the robot in the known map."""
@@ -106,32 +116,11 @@ class SlamNode(StageNode):
                 "unknown_frame",
                 f"frame {frame_id!r}; expected {self.params.map_frame!r}",
             )
-        if not self.params.known_map:
+        if not self._slam.is_map_known:
             self.get_logger().warning(
                 "initial pose ignored: this map began where the robot was put down"
             )
         self._slam.place(pose_of(msg.pose.pose))
-
-    def on_save_map(self, request: Any, response: Any) -> Any:
-        """Write MAP.yaml and its image, and MAP.slam to continue the map."""
-        try:
-            stem = Path(request.map_url.removeprefix("file://")).expanduser()
-            if not stem.name:
-                raise InvalidValueError("map_url is empty; expected the path of a file")
-            cells, spec = self._renderer.render(self._slam.placed_scans())
-            written = write_occupancy_map(
-                stem,
-                OccupancyMap(cells, spec.resolution, spec.origin),
-                mode=request.map_mode or "trinary",
-                image_format=request.image_format.lower(),
-            )
-            write_graph(stem.with_name(stem.name + SUFFIX), self._slam.graph)
-        except (OSError, ValueError, RuntimeError) as error:
-            self.get_logger().error(f"map not saved: {error}")
-            return response
-        self.get_logger().info(f"map saved: {written}, and {stem.name}{SUFFIX}")
-        response.result = True
-        return response
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose; use the scans that waited for it."""
@@ -160,31 +149,44 @@ class SlamNode(StageNode):
         """Begin a new map."""
         self._start()
 
-    def on_restart(self, request: Any, response: Any) -> Any:
-        """Begin a new map: the robot stands at its start again."""
-        self._start()
-        return response
-
     def _start(self) -> None:
+        """Begin as the parameters say: the robot stands at its start."""
         params = self.params
+        start: Pose2 | None
         start = Pose2(params.start_x_m, params.start_y_m, params.start_yaw_rad)
         graph = None
         if params.known_map:
             graph = read_graph(Path(params.known_map).expanduser(), params)
-        self._slam = Slam(
-            params,
-            None if graph and params.searches_start else start,
-            graph=graph,
-            is_mapping=params.mode == MAPPING,
-        )
-        self._renderer = MapRenderer(params)
+            start = None if params.searches_start else start
         self._tracker = PoseTracker(self, params.base_frame, params.odom_frame)
         self._attitude = AttitudeTracker()
         self._waiting: deque[tuple[int, LaserScan]] = deque(maxlen=_WAITING)
         self._taken_ns = -(10**18)
         self._newest_ns = 0
+        self._is_paused = False
+        is_mapping = params.mode == MAPPING
+        self._set_slam(Slam(params, start, graph=graph, is_mapping=is_mapping))
+
+    def _continue(self, graph: ScanGraph, start: Pose2, is_mapping: bool) -> None:
+        """Continue a map, or localize in it."""
+        self._set_slam(Slam(self.params, start, graph=graph, is_mapping=is_mapping))
+
+    def _empty(self) -> None:
+        """Begin a new map where the robot is."""
+        self._set_slam(self._slam.emptied())
+
+    def _set_slam(self, slam: Slam) -> None:
+        self._slam = slam
+        self._renderer = MapRenderer(self.params)
         self._map_keys = 0
         self._status.report(_WAITING_FOR_SCANS, StatusReporter.WARN)
+
+    def _pause(self, is_paused: bool) -> None:
+        """Leave scans out, or use them again; the odometry continues the pose."""
+        if is_paused != self._is_paused:
+            text = "paused: scans are left out" if is_paused else "continued"
+            self.get_logger().info(text)
+        self._is_paused = is_paused
 
     def _use_waiting(self) -> None:
         wait_ns = round(self.params.pose_wait_s * 1e9)
@@ -202,14 +204,12 @@ class SlamNode(StageNode):
                 self.drop_input(topics.LIDAR.name, error)
 
     def _use(self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None) -> None:
-        scan, base_T_sensor = planar_scan(
-            msg,
-            self._base_T_sensor(msg.header.frame_id),
-            upward_of(self._attitude.at(stamp_ns)),
-        )
-        estimate = self._slam.add(
-            stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor
-        )
+        if self._is_paused:
+            estimate = self._slam.predicted(odom_T_base)
+        else:
+            estimate = self._added(stamp_ns, msg, odom_T_base)
+        if estimate is None:
+            return
         self._newest_ns = stamp_ns
         self._report(estimate)
         self._publish_pose(stamp_ns, estimate)
@@ -219,6 +219,16 @@ class SlamNode(StageNode):
             self._publish_transform(
                 stamp_ns, estimate.map_T_base @ odom_T_base.inverse()
             )
+
+    def _added(
+        self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None
+    ) -> SlamEstimate:
+        scan, base_T_sensor = planar_scan(
+            msg,
+            self._base_T_sensor(msg.header.frame_id),
+            upward_of(self._attitude.at(stamp_ns)),
+        )
+        return self._slam.add(stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor)
 
     def _base_T_sensor(self, frame_id: str) -> Transform3:  # noqa: N802
         base = self.params.base_frame
@@ -294,8 +304,12 @@ class SlamNode(StageNode):
         if keys == self._map_keys or not self.has_listeners(topics.SLAM_MAP.name):
             return
         self._map_keys = keys
+        self.publish(topics.SLAM_MAP.name, self._map_message())
+
+    def _render(self) -> OccupancyMap:
         cells, spec = self._renderer.render(self._slam.placed_scans())
-        self.publish(
-            topics.SLAM_MAP.name,
-            grid_to_message(cells, spec, self.params.map_frame, self._newest_ns),
-        )
+        return OccupancyMap(cells, spec.resolution, spec.origin)
+
+    def _map_message(self) -> OccupancyGrid:
+        cells, spec = self._renderer.render(self._slam.placed_scans())
+        return grid_to_message(cells, spec, self.params.map_frame, self._newest_ns)

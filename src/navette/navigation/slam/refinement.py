@@ -21,6 +21,11 @@ from navette.navigation.slam.scan_points import Points
 
 # Normals of one surface differ less than this (cosine): both sides of a wall do not.
 _SAME_SIDE = 0.7
+# Standard deviation of a normal, rad. The normals of a bare corridor differ by it, and
+# seem to measure along the corridor: towards where the map has more points, back.
+_NORMAL_RAD = 0.05
+# Share of the information that is left where the normals' noise explains all of it.
+_DEGENERATE = 1e-3
 # Weight of a point without a surface: legs, leaves, corners.
 _SCATTERED = 0.2
 _CONVERGED_M = 1e-4
@@ -166,8 +171,40 @@ def sum_equations(
             squares += found[0] * found[0] + found[1] * found[1]
             _add(information, gradient, 1.0, 0.0, rx, ry, found[0], _SCATTERED, noise_m)
             _add(information, gradient, 0.0, 1.0, rx, ry, found[1], _SCATTERED, noise_m)
+    _remove_normal_noise(information, gradient)
     quality[0] = count / max(1, points.shape[0])
     quality[1] = math.sqrt(squares / max(1, count))
+
+
+@kernel
+def _remove_normal_noise(information: Matrix3, gradient: NDArray[np.float64]) -> None:
+    """Remove what the noise of the normals seems to measure, in the weakest direction.
+
+    Where that is all, the direction is degenerate: the prior decides there (solution
+    remapping; Zhang, Kaess and Singh 2016).
+    """
+    a, b, c = information[0, 0], information[0, 1], information[1, 1]
+    half = (a - c) / 2.0
+    weakest = (a + c) / 2.0 - math.sqrt(half * half + b * b)
+    noise = _NORMAL_RAD * _NORMAL_RAD * (a + c)
+    if noise <= 0.0:
+        return
+    share = max(_DEGENERATE, 1.0 - noise / max(weakest, noise))
+    angle = 0.5 * math.atan2(2.0 * b, a - c) + math.pi / 2.0
+    x, y = math.cos(angle), math.sin(angle)
+    # D = I − (1 − √share) d dᵀ; information D M D, gradient D² g.
+    lost = 1.0 - math.sqrt(share)
+    for k in range(3):
+        along = lost * (x * information[0, k] + y * information[1, k])
+        information[0, k] -= x * along
+        information[1, k] -= y * along
+    for k in range(3):
+        along = lost * (x * information[k, 0] + y * information[k, 1])
+        information[k, 0] -= x * along
+        information[k, 1] -= y * along
+    along = (1.0 - share) * (x * gradient[0] + y * gradient[1])
+    gradient[0] -= x * along
+    gradient[1] -= y * along
 
 
 @kernel

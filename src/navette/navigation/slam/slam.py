@@ -26,7 +26,7 @@ from navette.navigation.slam.relocation import locate
 from navette.navigation.slam.rendering import MapScan, render
 from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
 from navette.navigation.slam.scan_points import scan_points
-from navette.navigation.slam.tracking import LocalMap, match
+from navette.navigation.slam.tracking import DOUBTFUL, LocalMap, match
 from navette.navigation.slam.visibility import SensorView
 
 # Uncertainty of the first pose, which is the map's origin.
@@ -35,8 +35,8 @@ _START = np.diag([1e-6, 1e-6, 1e-6])
 _PLACED = np.diag([0.3**2, 0.3**2, 0.2**2])
 # What the errors that the scans of a local map share add to a match.
 _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
-# Overlap below which the odometry is doubted, and what another motion must gain.
-_DOUBTFUL, _GAIN = 0.6, 0.15
+# What another motion must gain where the odometry is doubted.
+_GAIN = 0.15
 # Standard deviation of a predicted motion beyond which it replaces no odometry, m.
 _SURE_M = 0.3
 # Newest key scans that are searched for in the map by a robot that is lost.
@@ -165,6 +165,27 @@ class Slam:
                 self._rebuild_local_map()
         return self._estimate(stamp_ns, matched is not None, is_corrected)
 
+    def predicted(self, odom_T_base: Pose2 | None) -> SlamEstimate | None:
+        """Return the pose by odometry alone; the next scan continues from the last.
+
+        None: without odometry, or before the robot is located.
+        """
+        if odom_T_base is None or not self._is_located:
+            return None
+        motion = self._motion.by_odometry(odom_T_base)
+        covariance = moved_covariance(
+            self._key_covariance + self._covariance, self._pose, motion
+        )
+        return SlamEstimate(
+            self._pose @ motion.pose, covariance, is_matched=False, is_corrected=False
+        )
+
+    def emptied(self) -> "Slam":
+        """Return a SLAM without a map; its first scan is where the robot is."""
+        fresh = Slam(self.params, self._pose)
+        fresh._motion = self._motion
+        return fresh
+
     def place(self, pose: Pose2) -> None:
         """Place the robot in a known map, roughly; the next scan finds it exactly."""
         if self._known:
@@ -176,6 +197,11 @@ class Slam:
         self.graph.optimise()
         refine_all(self.graph, self.params)
         self._continue_from_graph()
+
+    @property
+    def is_map_known(self) -> bool:
+        """Whether the robot is located in a map that was there before."""
+        return self._known > 0
 
     @property
     def loop_closures(self) -> int:
@@ -209,11 +235,11 @@ class Slam:
         self, key: KeyScan, motion: ScanMotion, odom: Pose2 | None, yaw: float | None
     ) -> None:
         """Start a map at the first scan, or find the scan in the known map."""
+        self._pose = self._pose @ motion.pose
         if not self._known:
             self._is_located = True
             self._keep(key, None)
             return
-        self._pose = self._pose @ motion.pose
         if self._start is None:
             start = self._searched(key, odom, yaw)
         else:
@@ -257,7 +283,7 @@ class Slam:
         self._rebuild_local_map()
         matched = self._matched(key, ScanMotion(HERE, np.zeros((3, 3))))
         self._pose, self._covariance = before
-        if matched is None or matched.overlap < _DOUBTFUL:
+        if matched is None or matched.overlap < DOUBTFUL:
             return None
         return matched
 
@@ -283,10 +309,10 @@ class Slam:
         before = self._pose
         moved, matched = motion, self._matched(key, motion)
         is_contradicted = self._is_contradicted
-        if matched is None or matched.overlap < _DOUBTFUL:
+        if matched is None or matched.overlap < DOUBTFUL:
             steady = self._motion.steady()
             other = self._matched(key, steady) if _is_sure(steady) else None
-            gain = _DOUBTFUL if matched is None else matched.overlap + _GAIN
+            gain = DOUBTFUL if matched is None else matched.overlap + _GAIN
             if other is not None and other.overlap > gain:
                 moved, matched = steady, other
         self._is_contradicted = matched is None and is_contradicted

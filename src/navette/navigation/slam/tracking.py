@@ -33,8 +33,13 @@ _LEAST_POINTS = 10
 _EVERY = 4
 # Fit that a squared Mahalanobis distance of 1 from the prior costs.
 _UNLIKELY = 0.01
-# Maxima of the score that are refined.
-_MAXIMA = 3
+# Maxima of the score that are refined, and those while none of them fits well: scans of
+# places that are far apart share few surfaces, and have several maxima.
+_MAXIMA, _MOST_MAXIMA = 3, 12
+# Share of the best score that they reach.
+_RIVAL = 0.5
+DOUBTFUL = 0.6
+"""Overlap below which a match is doubted."""
 # Fit that a pose far from the prior must gain.
 _GAIN = 0.02
 
@@ -108,12 +113,19 @@ def match(
     if spread > _NEAR * params.match_radius_m or turn > _NEAR_RAD:
         window = SearchWindow(min(spread, _WIDEST_M), min(turn, math.pi))
         starts: list[Pose2] = []
-        for _ in range(_MAXIMA):
-            found = search(local.grid, points, prior.pose, window, excluded=starts)
+        least = 0.0
+        for k in range(_MOST_MAXIMA):
+            if k >= _MAXIMA and best.overlap >= DOUBTFUL:
+                break
+            found = search(
+                local.grid, points, prior.pose, window,
+                min_score=least, excluded=starts,
+            )  # fmt: skip
             if found is None:
                 break
-            starts.append(found.pose)
+            least = max(least, _RIVAL * found.score)
             other = _refined(local, points, found.pose, prior, params)
+            starts += (found.pose, other.pose)
             if _fit(other, prior, params) > _fit(best, prior, params) + _GAIN:
                 best = other
     return best if best.overlap >= params.min_overlap else None

@@ -12,11 +12,11 @@ from navette.msgs import topics
 from navette.sim.params import SimParams
 from navette.sim.scene import GeoOrigin
 
-# Variances per second. Of the pose: slip of the wheels, which no sensor measures; its
-# other errors are those of the velocities.
+# Variances per second. Of the pose, at 1 m/s: slip of the wheels, which no sensor
+# measures; its other errors are those of the velocities.
 _PROCESS_NOISE = (
-    *(1e-4, 1e-4, 0.0, 0.0, 0.0, 2e-5),
-    *(2.0, 0.01, 0.0, 0.0, 0.0, 4.0),
+    *(5e-5, 5e-5, 0.0, 0.0, 0.0, 1e-6),
+    *(0.2, 0.01, 0.0, 0.0, 0.0, 0.05),
     *(1.0, 1.0, 0.0),
 )
 _ORIGIN = GeoOrigin()
@@ -49,7 +49,9 @@ def localization_parameters(
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
             **_fused(sim, origin),
             "process_noise_covariance": list(_PROCESS_NOISE),
+            "dynamic_process_noise_covariance": True,
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
+            "initial_pose_is_known": True,
         },
         "amcl": {
             "global_frame_id": sim.map_frame,

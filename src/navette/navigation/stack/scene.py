@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.worlds import load_scene
 from navette.runtime import Context
 from navette.runtime.names import RemapRule
 from navette.runtime.overrides import ParameterOverrides
@@ -13,7 +14,6 @@ from navette.sim import (
     derive_parameters,
     identify_robot,
     load_robot,
-    load_world,
     robot_names,
 )
 from navette.sim.mounting import mount_of, with_sensors
@@ -73,7 +73,7 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
         FileFormatError: invalid file; names file and line.
     """
     if scene is None:
-        scene = load_world(options.world)
+        scene = load_scene(options.world)
     robot = _choose_robot(options, scene)
     is_own = scene.robot is robot.model
     if options.sensors:

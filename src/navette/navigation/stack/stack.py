@@ -19,7 +19,11 @@ from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
 from navette.navigation.stack.localization import FILTER, LOCALIZATIONS
-from navette.navigation.stack.programs import MakeNode, default_context
+from navette.navigation.stack.programs import (
+    MakeNode,
+    check_replaceable,
+    default_context,
+)
 from navette.navigation.tracking.node import TrackingNode
 from navette.runtime import Context, Node, StageNode
 from navette.sim.node import SimNode
@@ -58,17 +62,6 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("lifecycle_manager_navigation", LifecycleManagerNode),
 )
 
-
-REPLACEABLE = (
-    "localizer",
-    "costmap",
-    "tracking",
-    "map_memory",
-    "planner",
-    "control",
-    "behaviors",
-)
-"""The nodes that programs of the user can replace, in the order of the stack."""
 
 _NOTHING: Mapping[str, MakeNode] = MappingProxyType({})
 
@@ -114,15 +107,13 @@ class NavigationStack:
 
         Args:
             context: context of the nodes.
-            replacements: names of :data:`REPLACEABLE` → what makes the node instead.
+            replacements: nodes of the stack → what makes the node instead.
             localization: names of the nodes that locate the robot.
 
         Raises:
             UnknownNameError: no such node, or one that cannot be replaced.
         """
-        for name in replacements:
-            if name not in REPLACEABLE:
-                raise UnknownNameError.of("node to replace", name, [*REPLACEABLE])
+        check_replaceable(replacements)
 
         def made(name: str) -> Node:
             if name in replacements:

@@ -413,7 +413,8 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--world",
         default="arena",
-        help="a built-in world (default: arena) or a file; it may contain a robot",
+        help="a built-in world (default: arena), a file, which may contain a robot, or "
+        "a generated world such as rooms:3",
     )
     parser.add_argument(
         "--robot",

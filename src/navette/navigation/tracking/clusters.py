@@ -1,5 +1,6 @@
 """Group the returns of a scan into obstacles, and measure centre and radius."""
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -26,13 +27,15 @@ class Cluster(NamedTuple):
     """An obstacle in one scan: a circle (m, map), and how it was measured.
 
     ``changed`` of its returns were not there before. ``is_round``: the returns lie on a
-    circle, so that the centre is accurate.
+    circle, so that the centre is accurate. ``is_whole``: neither something nearer nor
+    the end of the scan hides a part, so that the radius is known.
     """
 
     x: float
     y: float
     radius_m: float
     is_round: bool
+    is_whole: bool
     changed: int
 
 
@@ -80,6 +83,85 @@ def _segment_kernel(
         runs[count - 1, 1] = i + 1
         last = i
     return count
+
+
+def convex_parts(
+    points: Points, sensor: tuple[float, float], depth_m: float
+) -> list[NDArray[np.int64]]:
+    """Return the indices of neighbouring returns, divided where the surface recedes.
+
+    The near side of one convex obstacle bulges towards the sensor. Where returns lie
+    ``depth_m`` behind the hull on the sensor's side, two obstacles meet.
+
+    Args:
+        points: (N, 2) neighbouring returns in the order of their beams, m.
+        sensor: position, m.
+        depth_m: must exceed the noise of the ranges.
+    """
+    if not len(points):
+        return []
+    ends = [0]
+    waiting = [(0, len(points))]
+    while waiting:
+        first, stop = waiting.pop()
+        at = _deepest(points[first:stop], sensor[0], sensor[1], depth_m)
+        if at > 0:
+            waiting += [(first + at, stop), (first, first + at)]
+        else:
+            ends.append(stop)
+    return [np.arange(*each) for each in itertools.pairwise(ends)]
+
+
+@kernel(signature="int64(float64[:, ::1], float64, float64, float64)")
+def _deepest(points: Points, x: float, y: float, depth: float) -> int:
+    """Return the index of the return farthest behind the hull; 0: none is so far."""
+    count = points.shape[0]
+    if count < 3:
+        return 0
+    ax, ay = points[0, 0] - x, points[0, 1] - y
+    bx, by = points[count - 1, 0] - x, points[count - 1, 1] - y
+    side = 1.0 if ax * by - ay * bx >= 0.0 else -1.0  # the beams' direction of turn
+    hull = np.empty(count, np.int64)
+    size = 0
+    for k in range(count):
+        while size >= 2:
+            i, j = hull[size - 2], hull[size - 1]
+            ax, ay = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+            bx, by = points[k, 0] - points[j, 0], points[k, 1] - points[j, 1]
+            if side * (ax * by - ay * bx) < 0.0:
+                break
+            size -= 1
+        hull[size] = k
+        size += 1
+    found = 0
+    for h in range(size - 1):
+        i, j = hull[h], hull[h + 1]
+        ax, ay = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        length = math.sqrt(ax * ax + ay * ay)
+        for k in range(i + 1, j):
+            bx, by = points[k, 0] - points[i, 0], points[k, 1] - points[i, 1]
+            behind = abs(ax * by - ay * bx) / max(length, 1e-9)
+            if behind > depth:
+                depth, found = behind, k
+    return found
+
+
+def is_whole(ranges: NDArray[np.float32], first: int, stop: int, turn: float) -> bool:
+    """Return whether beams pass behind a run of returns at both of its ends.
+
+    Args:
+        ranges: (N,) of the scan, m.
+        first, stop: half-open interval of the run's beams.
+        turn: angle that the N beams cover, rad; a whole turn has no end.
+    """
+    count = len(ranges)
+    closed = turn > 2 * math.pi - 1e-3
+    for end, beside in ((first, first - 1), (stop - 1, stop)):
+        if not (closed or 0 <= beside < count):
+            return False
+        if not ranges[beside % count] > ranges[end]:  # also not a number
+            return False
+    return True
 
 
 def extent(points: Points) -> float:

@@ -74,17 +74,17 @@ class TrackingNode(StageNode):
     def on_scan(self, msg: LaserScan) -> None:
         """Publish what moves at the stamp of the scan."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
+        if self._used_ns is not None:
+            since_ns = stamp_ns - self._used_ns
+            # A tenth of the period less: stamps jitter.
+            if 0 <= since_ns < 0.9e9 / self.params.rate_hz:
+                return
         if self._odometry is not None:
             jumps = self._poses.jumps
             self._poses.update(self._odometry)
             self._odometry = None
             if self._poses.jumps != jumps:
                 self._obstacles.reset()  # everything seems to have moved
-        if self._used_ns is not None:
-            since_ns = stamp_ns - self._used_ns
-            # A tenth of the period less: stamps jitter.
-            if 0 <= since_ns < 0.9e9 / self.params.rate_hz:
-                return
         map_T_base = self._poses.predicted_at(stamp_ns)
         base_T_sensor = self._poses.transform_to_base(msg.header.frame_id)
         if map_T_base is None or base_T_sensor is None:

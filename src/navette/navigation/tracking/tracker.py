@@ -11,9 +11,11 @@ from navette.navigation.grids import PlanarScan, beam_directions
 from navette.navigation.tracking.clusters import (
     Cluster,
     behind_returns,
+    convex_parts,
     extent,
     fit_centre,
     fit_disc,
+    is_whole,
     segment,
 )
 from navette.navigation.tracking.free_space import PlacedScan, passed_by
@@ -29,6 +31,12 @@ _SAME_RADIUS = 0.3
 # Returns this near to the predicted circle of a track belong to it, where those of
 # several obstacles are joined.
 _ON_CIRCLE_M, _LEAST_CIRCLES = 0.15, 2
+# Those this far from all circles belong to something else.
+_OFF_CIRCLE_M = 0.3
+# Share of the free margin by which the surface recedes between two obstacles.
+_DEPTH = 0.5
+# Share of an obstacle's returns that are new; less than that of a wall's.
+_NEW_SHARE = 0.5
 # Beams past the predicted centre that show that an obstacle is not there any more.
 _PASSED = 3
 
@@ -140,35 +148,43 @@ class MovingObstacles:
         largest = self.params.max_size_m
         clusters = []
         runs = segment(placed.points, placed.valid, away, self.params.gap_m)
+        turn = abs(placed.angle_increment) * len(placed.ranges)
         for first, stop in runs[runs[:, 1] - runs[:, 0] >= _LEAST_RETURNS].tolist():
             returns = first + np.flatnonzero(placed.valid[first:stop])
-            for part in self._divided(placed.points, returns):
+            parts = self._divided(placed, returns)
+            mostly_new = np.count_nonzero(changed[returns]) >= _NEW_SHARE * len(returns)
+            if len(parts) == 1 and mostly_new:
+                parts = self._convex(placed, returns)
+            whole = len(parts) == 1 and is_whole(placed.ranges, first, stop, turn)
+            for part in parts:
                 points = placed.points[part]
                 if len(points) < _LEAST_RETURNS:
                     continue
                 new = int(np.count_nonzero(changed[part]))
                 if extent(points) > largest:
-                    # An obstacle in front of a wall: only what is new of it.
                     if new >= _LEAST_RETURNS:
-                        clusters += self._new_parts(placed, changed, first, stop)
+                        clusters += self._parts_of_wide(placed, changed, part)
                     continue
                 left = _count_near(vanished, points.mean(axis=0), largest / 2)
                 evidence = new if new >= _LEAST_CHANGED else 0
                 evidence += left if left > _LEAST_CHANGED else 0
                 if evidence or self._is_near_track(points):
-                    clusters.append(self._measure(placed, points, evidence))
+                    clusters.append(self._measure(placed, points, whole, evidence))
         return clusters
 
     def _divided(
-        self, points: NDArray[np.float64], returns: NDArray[np.int64]
+        self, placed: PlacedScan, returns: NDArray[np.int64]
     ) -> list[NDArray[np.int64]]:
-        """Return the indices of a run's returns, divided between known circles.
+        """Return the indices of a run's returns, divided between obstacles.
 
         Obstacles that meet, or pass before each other, have one run of returns. Each
         return belongs to the predicted circle that it lies on.
         """
+        points = placed.points
+        if not len(returns):
+            return [returns]
         round_ = [t for t in self._tracks if t.is_moving and t.is_round]
-        if len(round_) < _LEAST_CIRCLES or not len(returns):
+        if len(round_) < _LEAST_CIRCLES:
             return [returns]
         circles = np.array([(t.x, t.y, t.radius_m) for t in round_])
         arms = points[returns, None, :] - circles[:, :2]
@@ -181,31 +197,70 @@ class MovingObstacles:
         if len(owners) < _LEAST_CIRCLES:
             return [returns]
         nearest = owners[off[:, owners].argmin(axis=1)]
-        return [returns[nearest == owner] for owner in owners]
+        nearest[off.min(axis=1) > _OFF_CIRCLE_M] = -1
+        parts = [returns[nearest == owner] for owner in owners]
+        return [*parts, returns[nearest < 0]]
+
+    def _parts_of_wide(
+        self,
+        placed: PlacedScan,
+        changed: NDArray[np.bool_],
+        returns: NDArray[np.int64],
+    ) -> list[Cluster]:
+        """Measure what is new of a run that is too wide for one obstacle.
+
+        Several obstacles, or obstacles in front of a wall.
+        """
+        found = []
+        for part in self._convex(placed, returns):
+            points, new = placed.points[part], int(np.count_nonzero(changed[part]))
+            if new < _LEAST_RETURNS:
+                continue
+            if extent(points) <= self.params.max_size_m:
+                cluster = self._measure(placed, points, False, new)
+                if cluster.is_round or new >= _NEW_SHARE * len(part):
+                    found.append(cluster)
+                    continue
+            found += self._new_parts(placed, changed, part)
+        return found
+
+    def _convex(
+        self, placed: PlacedScan, returns: NDArray[np.int64]
+    ) -> list[NDArray[np.int64]]:
+        """Return the indices, divided where the surface recedes."""
+        depth_m = _DEPTH * self.params.free_margin_m
+        parts = convex_parts(placed.points[returns], (placed.x, placed.y), depth_m)
+        return [returns[part] for part in parts]
 
     def _new_parts(
-        self, placed: PlacedScan, changed: NDArray[np.bool_], first: int, stop: int
+        self,
+        placed: PlacedScan,
+        changed: NDArray[np.bool_],
+        returns: NDArray[np.int64],
     ) -> list[Cluster]:
-        """Return the runs of new returns within a run."""
+        """Return the runs of new returns among neighbouring returns."""
         found = []
-        edges = np.flatnonzero(np.diff(changed[first:stop].astype(np.int8))) + 1
-        for part in np.split(np.arange(first, stop), edges):
+        edges = np.flatnonzero(np.diff(changed[returns].astype(np.int8))) + 1
+        for part in np.split(returns, edges):
             if changed[part[0]] and len(part) >= _LEAST_RETURNS:
                 points = placed.points[part]
                 if extent(points) <= self.params.max_size_m:
-                    found.append(self._measure(placed, points, len(part)))
+                    found.append(self._measure(placed, points, False, len(part)))
         return found
 
     def _measure(
         self,
         placed: PlacedScan,
         points: NDArray[np.float64],
+        whole: bool,
         changed: int,
     ) -> Cluster:
         sensor = (placed.x, placed.y)
         disc = fit_disc(points, sensor, self.params.max_size_m / 2)
         track = self._nearest_track(disc[0], disc[1])
-        if track is not None and not (
+        if track is None or (whole and disc[3]):
+            return Cluster(*disc, whole, changed)
+        if not (
             disc[3] and abs(disc[2] - track.radius_m) <= _SAME_RADIUS * track.radius_m
         ):
             # Partly hidden, or too few returns for a circle of their own.
@@ -213,7 +268,7 @@ class MovingObstacles:
             if track.is_round:
                 known = fit_centre(points, (track.x, track.y), track.radius_m)
                 disc = known if known[3] else disc
-        return Cluster(*disc, changed)
+        return Cluster(*disc, whole, changed)
 
     def _nearest_track(self, x: float, y: float) -> Track | None:
         near = [
@@ -235,7 +290,7 @@ class MovingObstacles:
         matched = associate(self._tracks, clusters, params.gate_m)
         for i, track in enumerate(self._tracks):
             if i in matched:
-                track.update(clusters[matched[i]], params)
+                track.update(clusters[matched[i]], (placed.x, placed.y), params)
             else:
                 track.misses += 1
         taken = set(matched.values())

@@ -61,6 +61,7 @@ class Track:
     misses: int = 0
     is_moving: bool = False
     is_round: bool = False
+    wholes: int = 0  # measurements of the whole obstacle
     slow_ns: int = 0
 
     @classmethod
@@ -79,6 +80,7 @@ class Track:
             seen_ns=stamp_ns,
             slow_ns=stamp_ns,
             is_round=cluster.is_round,
+            wholes=int(cluster.is_whole),
             origin=(cluster.x, cluster.y),
         )
 
@@ -97,8 +99,11 @@ class Track:
         self.pv += dt * self.vv + density * dt**2 / 2
         self.vv += density * dt
 
-    def update(self, cluster: Cluster, params: TrackingParams) -> None:
-        """Correct the prediction by a measurement at the same stamp."""
+    def update(
+        self, cluster: Cluster, sensor: tuple[float, float], params: TrackingParams
+    ) -> None:
+        """Correct the prediction by a measurement at the same stamp from ``sensor``."""
+        self._resize(cluster, sensor)
         stddev = params.measurement_stddev_m
         if not cluster.is_round:
             stddev *= _UNCERTAIN
@@ -113,13 +118,32 @@ class Track:
         self.vv -= speed_gain * self.pv
         self.pv *= 1 - gain
         self.pp *= 1 - gain
-        if cluster.is_round or not self.is_round:
-            self.radius_m += _RADIUS_GAIN * (cluster.radius_m - self.radius_m)
         self.hits += 1
         self.changes += 1 if cluster.changed else 0
         self.misses = 0
         self.seen_ns = self.stamp_ns
         self._judge(params)
+
+    def _resize(self, cluster: Cluster, sensor: tuple[float, float]) -> None:
+        """Correct the radius; the near side, which was measured, stays.
+
+        A part that is seen shows the least radius only. The centre moves without a
+        velocity.
+        """
+        before = self.radius_m
+        if cluster.is_whole:
+            self.wholes += 1
+            gain = max(_RADIUS_GAIN, 1.0 / self.wholes)
+            self.radius_m += gain * (cluster.radius_m - before)
+            self.is_round = cluster.is_round
+        elif not self.wholes and cluster.is_round:
+            self.radius_m += _RADIUS_GAIN * (cluster.radius_m - before)
+        elif not self.wholes:
+            self.radius_m = max(before, cluster.radius_m)
+        away = math.hypot(self.x - sensor[0], self.y - sensor[1]) or 1.0
+        grown = (self.radius_m - before) / away
+        self.x += grown * (self.x - sensor[0])
+        self.y += grown * (self.y - sensor[1])
 
     def _judge(self, params: TrackingParams) -> None:
         """Decide whether the obstacle moves."""

@@ -59,9 +59,8 @@ def checked_array(
             f"{name} returned {type(value).__name__} {shown}; expected {expected}"
         ) from None
     if not fits(array.shape):
-        raise MethodFaultError(
-            f"{name} returned an array of shape {array.shape}; expected {expected}"
-        )
+        found = f"an array of shape {array.shape}" if array.ndim else f"{array:g} alone"
+        raise MethodFaultError(f"{name} returned {found}; expected {expected}")
     finite = np.isfinite(array)
     if not finite.all():
         at = tuple(int(i) for i in np.argwhere(~finite)[0])

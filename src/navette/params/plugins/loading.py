@@ -64,7 +64,8 @@ class Method:
             expected = "()" if kind is None else "(params)"
             raise InvalidValueError(
                 f"{describe(self.name, self.target)}: cannot be made with {expected}: "
-                f"{error}"
+                f"{error}; parameters are the fields of a dataclass: make the class "
+                "one with @dataclass, or define a dataclass Params in it"
             ) from error
 
 
@@ -77,10 +78,13 @@ def load_method(place: str, protocols: Protocols, kind: str) -> Method:
         UnknownNameError: no such file, module or name; lists what there is.
         InvalidValueError: it cannot be imported, or does not have the protocol.
     """
-    if place.endswith(".py"):
-        found = _only_method(place, load_module(place), protocols, kind)
-    else:
-        found = load_attribute(place)
+    alone = place.endswith(".py")
+    try:
+        found = load_module(place) if alone else load_attribute(place)
+    except (InvalidValueError, UnknownNameError) as error:
+        raise type(error)(f"{kind} {place}: {error}") from error
+    if alone:
+        found = _only_method(place, found, protocols, kind)
     return checked_method(place, found, protocols, kind)
 
 
@@ -141,7 +145,7 @@ def load_module(source: str) -> ModuleType:
     if source.endswith(".py"):
         path = Path(source).expanduser()
         if not path.is_file():
-            raise UnknownNameError(f"{source}: no such file (in {Path.cwd()})")
+            raise UnknownNameError(f"{source}: no such file in {Path.cwd()}")
         return _load_file(path.resolve())
     _put_on_path(Path.cwd())
     try:

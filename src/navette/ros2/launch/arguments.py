@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
-from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.ros2.packages.launch import LaunchDescription, LaunchDescriptionEntity
@@ -61,17 +60,3 @@ def _may_declare(entity: LaunchDescriptionEntity) -> bool:
     if isinstance(entity, IncludeLaunchDescription):
         return not entity.get_sub_entities()
     return isinstance(entity, (ForEach, ForLoop, OpaqueFunction))
-
-
-def describe_arguments(declared: Sequence[Any]) -> str:
-    """Format declared arguments as ``ros2 launch --show-args`` does."""
-    lines = ["Arguments (pass arguments as '<name>:=<value>'):", ""]
-    if not declared:
-        lines += ["  No arguments.", ""]
-    for argument in declared:
-        lines.append(f"    '{argument.name}':")
-        lines.append(f"        {argument.description}")
-        if argument.default_value is not None:
-            lines.append(f"        (default: {argument.describe_default()})")
-        lines.append("")
-    return "\n".join(lines)

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from navette.errors import FileFormatError
 from navette.ros2.launch.arguments import (
-    describe_arguments,
     is_complete,
     unknown_argument_error,
     unknown_arguments,
@@ -18,6 +17,7 @@ from navette.ros2.launch.arguments import (
 from navette.ros2.launch.programs import InProcessRunner
 from navette.ros2.packages.launch import LaunchDescription, LaunchService
 from navette.ros2.packages.launch.actions import IncludeLaunchDescription
+from navette.ros2.packages.launch.actions.arguments import describe_arguments
 from navette.ros2.packages.launch.events import Shutdown
 from navette.ros2.packages.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,

@@ -46,6 +46,7 @@ _ALWAYS_NAVETTE = frozenset(
         "launch_pytest",
         "launch_ros",
         "launch_testing",
+        "launch_testing_ros",
         "launch_xml",
         "launch_yaml",
     }

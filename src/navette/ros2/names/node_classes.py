@@ -85,7 +85,7 @@ def _load(place: str) -> ModuleType:
     if place.endswith(".py"):
         path = Path(place)
         if not path.is_file():
-            raise UnknownNameError(f"{path}: no such file")
+            raise UnknownNameError(f"{path}: no such file in {Path.cwd()}")
         _put_on_path(search_path(path.resolve()))
         return load_file(path, path.stem)
     _put_on_path((Path.cwd(),))

@@ -5,7 +5,6 @@ that Python has once per process exists once per program: ``sys.argv`` and the d
 context.
 """
 
-import asyncio
 import contextvars
 import signal
 import sys
@@ -156,6 +155,8 @@ class RunningProgram:
 @contextmanager
 def _main_thread_event_loop() -> Iterator[None]:
     """Give this thread a default asyncio loop; asyncio makes one in the main thread."""
+    import asyncio  # later: one program in the main thread needs none
+
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     try:

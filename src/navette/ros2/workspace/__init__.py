@@ -1,6 +1,11 @@
 """Packages of a workspace: search without a build step, and creation."""
 
-from navette.ros2.workspace.create import create_package
+from navette.ros2.workspace.create import (
+    BUILD_TYPES,
+    PackageAbout,
+    create_bare_package,
+    create_package,
+)
 from navette.ros2.workspace.finding import (
     PackageNotFoundError,
     activate,
@@ -12,10 +17,13 @@ from navette.ros2.workspace.manifest import read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
 __all__ = [
+    "BUILD_TYPES",
     "Origin",
     "Package",
+    "PackageAbout",
     "PackageNotFoundError",
     "activate",
+    "create_bare_package",
     "create_package",
     "find_package",
     "find_packages",

@@ -6,8 +6,10 @@ The text of a template may contain ``$package``, ``$node``, …, and its file na
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from string import Template
+from xml.sax.saxutils import escape
 
 from navette.errors import FileFormatError, InvalidNameError
 from navette.ros2.workspace.manifest import FILE_NAME
@@ -21,6 +23,76 @@ _MESSAGES = "_msgs"
 #: Dependencies that the templates contain.
 _PYTHON_NEEDS = ("launch", "launch_ros", "rclpy", "std_msgs", "ament_index_python")
 _MESSAGES_NEEDS = ("std_msgs", "builtin_interfaces", "action_msgs")
+
+
+#: Build types of ROS 2's own packages without contents.
+BUILD_TYPES = ("ament_python", "ament_cmake")
+
+
+@dataclass(frozen=True, slots=True)
+class PackageAbout:
+    """Texts of a manifest; the defaults are ROS 2's."""
+
+    description: str = "TODO: Package description"
+    license: str = "TODO: License declaration"
+    maintainer: str = "user"
+    email: str = "user@todo.todo"
+
+
+def create_bare_package(
+    name: str,
+    folder: Path,
+    build_type: str,
+    *,
+    node: str | None = None,
+    dependencies: Sequence[str] = (),
+    about: PackageAbout | None = None,
+) -> Path:
+    """Create the package of ``ros2 pkg create --build-type``: build files, no contents.
+
+    Args:
+        build_type: ``ament_python`` or ``ament_cmake``.
+        node: name of a program that prints a line; default: none.
+
+    Raises:
+        InvalidNameError: ROS 2 does not allow a name, or unknown build type.
+        FileFormatError: the folder exists already.
+    """
+    _check(name, _NAME, "package", "a-z, then a-z, 0-9 and single underscores")
+    for each in dependencies:
+        _check(each, _DEPENDENCY_NAME, "package", "a-z, A-Z, 0-9, hyphens, underscores")
+    if build_type not in BUILD_TYPES:
+        raise InvalidNameError(
+            f"{build_type!r} is not a build type; allowed: {', '.join(BUILD_TYPES)}"
+        )
+    if node is not None:
+        _check(node, _NODE_NAME, "node", "a-z or A-Z, then also 0-9 and underscores")
+    values = _values(name, node or name, dependencies) | _about_values(about)
+    values |= {"entry_points": "", "cmake_program": ""}
+    if node is not None:
+        entry = f"'{node} = {name}.{node}:main',"
+        values["entry_points"] = f"\n            {entry}"
+        values["cmake_program"] = (
+            f"\nadd_executable({node} src/{node}.cpp)\n"
+            f"install(TARGETS {node}\n  DESTINATION lib/${{PROJECT_NAME}})\n"
+        )
+    package = _make(build_type, folder / name, values)
+    if node is not None:
+        _fill(f"{build_type}_node", package, values)
+    return package
+
+
+def _about_values(about: PackageAbout | None) -> dict[str, str]:
+    """Return the texts as XML and as Python literals."""
+    about = about or PackageAbout()
+    texts = {
+        "description": about.description,
+        "license": about.license,
+        "maintainer": about.maintainer,
+        "email": about.email,
+    }
+    as_xml = {key: escape(text, {'"': "&quot;"}) for key, text in texts.items()}
+    return as_xml | {f"{key}_literal": repr(text) for key, text in texts.items()}
 
 
 def create_package(
@@ -94,6 +166,10 @@ def _values(package: str, node: str, needs: Sequence[str]) -> dict[str, str]:
 
 def _make(template: str, folder: Path, values: dict[str, str]) -> Path:
     _refuse_existing(folder)
+    return _fill(template, folder, values)
+
+
+def _fill(template: str, folder: Path, values: dict[str, str]) -> Path:
     root = TEMPLATES / template
     for source in sorted(root.rglob(f"*{_SUFFIX}")):
         relative = str(source.relative_to(root)).removesuffix(_SUFFIX)

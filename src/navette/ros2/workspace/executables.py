@@ -36,7 +36,10 @@ _STAGES = (
     "viewer",
     "recorder",
 )
+#: ROS 2's windows, which the live view replaces.
+_WINDOWS = ("rviz2", "rqt_graph", "rqt_console", "rqt_gui")
 _TURTLES = ("turtlesim_node", "turtle_teleop_key", "draw_square", "mimic")
+_TRANSFORMS = ("static_transform_publisher", "tf2_echo")
 #: Package → program → module and function.
 _PROGRAMS = {
     BUILT_IN: {
@@ -44,7 +47,10 @@ _PROGRAMS = {
         **{name: ("navette.navigation.stack.stages", name) for name in _STAGES},
     },
     "turtlesim": {name: ("navette.cli.turtlesim", name) for name in _TURTLES},
+    "tf2_ros": {name: ("navette.cli.tf2_programs", name) for name in _TRANSFORMS},
+    **{name: {name: ("navette.cli.live_view", "main")} for name in _WINDOWS},
 }
+PACKAGES_OF_PROGRAMS = frozenset(_PROGRAMS)
 
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
 _CMAKE_PROGRAMS = re.compile(

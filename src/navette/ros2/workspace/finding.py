@@ -13,6 +13,7 @@ from pathlib import Path
 from navette import msgs
 from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
 from navette.msgs.registry import DEFINITIONS, prefer_interfaces
+from navette.ros2.workspace.executables import PACKAGES_OF_PROGRAMS
 from navette.ros2.workspace.manifest import FILE_NAME, is_package_name, read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
@@ -208,11 +209,12 @@ def _installed(prefix: Path) -> Iterator[Package]:
 
 
 def _built_in() -> Iterator[Package]:
-    """Yield Navette's package and the interface packages with their definitions."""
-    yield Package("navette", Path(__file__).parents[2], Origin.BUILT_IN)
-    for folder in sorted(DEFINITIONS.iterdir()):
-        if folder.is_dir():
-            yield Package(folder.name, folder, Origin.BUILT_IN)
+    """Yield the packages with Navette's programs or definitions of interfaces."""
+    folders = [folder for folder in sorted(DEFINITIONS.iterdir()) if folder.is_dir()]
+    for name in sorted(PACKAGES_OF_PROGRAMS - {folder.name for folder in folders}):
+        yield Package(name, Path(__file__).parents[2], Origin.BUILT_IN)
+    for folder in folders:
+        yield Package(folder.name, folder, Origin.BUILT_IN)
 
 
 def _variable(name: str) -> list[str]:

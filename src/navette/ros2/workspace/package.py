@@ -79,14 +79,20 @@ class Package:
     def executables(self) -> tuple[PackageExecutable, ...]:
         """Return the programs for ``navette run PACKAGE EXECUTABLE``, sorted by name.
 
+        Navette's programs replace those of C++ packages: in a workspace with the
+        sources of turtlesim, turtlesim_node is Navette's.
+
         Raises:
             FileFormatError: setup.py, setup.cfg or pyproject.toml is not valid.
         """
+        own: tuple[PackageExecutable, ...] = ()
         if self.origin is Origin.SOURCE:
-            return source_executables(self.name, self.folder)
-        if self.origin is Origin.INSTALLED:
-            return installed_executables(self.name, self.prefix / "lib" / self.name)
-        return built_in_executables(self.name)
+            own = source_executables(self.name, self.folder)
+        elif self.origin is Origin.INSTALLED:
+            own = installed_executables(self.name, self.prefix / "lib" / self.name)
+        names = {each.name for each in own}
+        added = built_in_executables(self.name)
+        return (*own, *(each for each in added if each.name not in names))
 
     def executable(self, name: str) -> PackageExecutable:
         """Return one program by name.

@@ -21,19 +21,21 @@ class InputPeriod:
         """Forget all arrivals."""
         self._last_ns: int | None = None
         self._intervals: deque[int] = deque(maxlen=_INTERVALS)
-        self._period_s = 0.0
+        self._period_s: float | None = 0.0  # None: not computed yet
 
     def note(self, now_ns: int) -> None:
         """Add an arrival."""
         if self._last_ns is not None and now_ns > self._last_ns:
             self._intervals.append(now_ns - self._last_ns)
             if len(self._intervals) >= _FEWEST:
-                self._period_s = median(self._intervals) / 1e9
+                self._period_s = None
         self._last_ns = now_ns
 
     @property
     def seconds(self) -> float:
         """The period; 0 until it has been measured."""
+        if self._period_s is None:
+            self._period_s = median(self._intervals) / 1e9
         return self._period_s
 
     def timeout_s(self, least_s: float, periods: float) -> float:
@@ -43,4 +45,4 @@ class InputPeriod:
             least_s: for fast inputs.
             periods: for slower ones, up to 0.42 s.
         """
-        return max(least_s, min(periods * self._period_s, _LONGEST_S))
+        return max(least_s, min(periods * self.seconds, _LONGEST_S))

@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
+from difflib import get_close_matches
 from functools import partial
 from typing import Any, ClassVar, Self
 
@@ -24,8 +25,9 @@ from navette.runtime.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from navette.runtime.ros_clock import JumpThreshold, TimeJump
 from navette.runtime.stage.dropped_inputs import DroppedInputs
 from navette.runtime.stage.params import declare_params
+from navette.runtime.stage.stamp_selection import StampSelection
 from navette.runtime.subscription import Subscription
-from navette.runtime.time import Duration
+from navette.runtime.time import Duration, stamp_to_ns
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +87,9 @@ class Input(_Topic):
     #: Whether the contents must be valid, not only the stamp; False if the callback
     #: uses a part of them and checks that itself.
     checks_contents: bool = True
+    #: The callback gets the last message of each period, by the stamps of the headers;
+    #: None = every message. All count as arrivals.
+    most_hz: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -254,6 +259,8 @@ class StageNode(Node):
         callback = declared.callback
         if isinstance(callback, str):
             callback = getattr(self, callback)
+        if declared.most_hz is not None:
+            callback = _at_most(declared.most_hz, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
         shared = self.context.input_checks
         checks = {
@@ -284,10 +291,12 @@ class StageNode(Node):
     def _check_unknown_overrides(self) -> None:
         for name, override in self._node_overrides.items():
             if not self.has_parameter(name) and not override.is_for_all:
-                known = ", ".join(sorted(self.known_parameters() or []))
+                known = sorted(self.known_parameters() or [])
+                close = get_close_matches(name, known, n=1)
+                hint = f"; did you mean {close[0]!r}?" if close else ""
                 raise ParameterError(
                     f"{override.origin}: node {self.get_fully_qualified_name()} has "
-                    f"no parameter {name!r}; known: {known}"
+                    f"no parameter {name!r}{hint}; known: {', '.join(known)}"
                 )
 
     def _check_params(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
@@ -343,3 +352,15 @@ class StageNode(Node):
         for name in own_fields(old, self.PARAMS):
             self.undeclare_parameter(name)
         self.params = declare_params(self, type(self.params))
+
+
+def _at_most(rate_hz: float, callback: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return a callback for messages of a header that skips those not selected."""
+    selection = StampSelection(rate_hz)
+
+    def call(msg: Any) -> Any:
+        if selection.takes(stamp_to_ns(msg.header.stamp)):
+            return callback(msg)
+        return None
+
+    return call

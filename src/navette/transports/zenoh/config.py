@@ -27,7 +27,13 @@ _OVERHEAD_BYTES = 1024 * 1024
 # Zenoh's own number (4) is enough.
 _KEEP_ALIVES_BETWEEN_MACHINES = 20
 
-_DROP = "transport/link/tx/queue/congestion_control/drop"
+_CONGESTION = "transport/link/tx/queue/congestion_control"
+# Time in µs after which Zenoh closes a link that takes nothing. It is lost for good:
+# peers call each other once. With Zenoh's own 5 s, a process that was stopped for 6 s
+# while long messages waited received nothing more. As long as the lease, with which the
+# link to a stopped process ends anyway: on a busy machine a full link sometimes stays
+# blocked until this time, although the other process reads again.
+_WAIT_BEFORE_CLOSE = 10_000_000
 # Time in µs that a publisher waits for a full queue before it drops a sample, or the
 # fragments of a long one. On one machine the other process drains the queue within
 # milliseconds, so that a burst is not lost; if that process is stopped, a publisher
@@ -125,8 +131,11 @@ def router_endpoints(settings: Settings) -> list[str]:
 
 def _base(settings: Settings, path: Path | None) -> zenoh.Config:
     config = _read(path)
+    if path is None:
+        wait = str(_WAIT_BEFORE_CLOSE)
+        config.insert_json5(f"{_CONGESTION}/block/wait_before_close", wait)
     if path is None and settings.is_local:
-        config.insert_json5(_DROP, json.dumps(_LOCAL_WAIT))
+        config.insert_json5(f"{_CONGESTION}/drop", json.dumps(_LOCAL_WAIT))
     elif path is None:
         number = str(_KEEP_ALIVES_BETWEEN_MACHINES)
         config.insert_json5("transport/link/tx/keep_alive", number)

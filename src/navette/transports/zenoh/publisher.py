@@ -109,6 +109,7 @@ class ZenohPublisher(PublisherPort):
                 return
             self._is_open = self._keeps_samples = False
             publisher, self._publisher = self._publisher, None
+            self._put = self._declare_and_put  # does nothing from here on
         self._owner.release(self)  # no remote matches from here on: nothing is sent
         if publisher is not None:
             publisher.undeclare()

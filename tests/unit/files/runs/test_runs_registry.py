@@ -202,6 +202,30 @@ def test_of_another_protocol_only_the_common_values_are_read() -> None:
     assert found.row()[1] == "started by Navette 9.1"
 
 
+# Written by `navette demo` of 22 November 2026.
+RECORDED = """{"name": "demo", "command": "navette demo", "world": "arena", "pid": 7,
+"domain": 0, "page": "http://127.0.0.1:8765", "navette": "0.1.0", "protocol": 1}"""
+
+
+@pytest.mark.parametrize("more", [{}, {"robot": "jackal", "started": [1, 2]}])
+def test_an_entry_of_another_version_with_the_same_protocol_is_read(
+    more: dict[str, object],
+) -> None:
+    """A change that fails here needs a new protocol number."""
+    text = json.dumps({**json.loads(RECORDED), **more})
+    found = RunInfo.from_json(text, Path("/run/demo"))
+    assert found.is_compatible
+    assert found.row() == (
+        "demo",
+        "navette demo",
+        "arena",
+        "http://127.0.0.1:8765",
+        "7",
+    )
+    assert set(json.loads(found.to_json())) == set(json.loads(RECORDED))
+    assert found.router == "unixsock-stream//run/demo/router.sock"
+
+
 def test_a_world_with_control_characters_is_published_without_them() -> None:
     run = PrivateRun.claim("sim", world="a\x1b[2Jb" + "c" * 300)
     run.publish("")

@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from navette.errors import FileFormatError, InvalidValueError
-from navette.navigation.bench.dynabarn import dynabarn_scene, dynabarn_trials
-from navette.navigation.bench.moving_worlds import moving_scene
-from navette.navigation.bench.run import scene_of
+from navette.navigation.bench.dynabarn import dynabarn_trials
 from navette.navigation.bench.suites import suite_trials
+from navette.navigation.worlds import load_scene
+from navette.navigation.worlds.dynabarn import dynabarn_scene
+from navette.navigation.worlds.moving_worlds import moving_scene
 
 OBSTACLE = {
     "name": "obs_1",
@@ -34,7 +35,7 @@ def test_worlds_start_goal_and_limits_are_those_of_the_benchmark(
     assert trials[0].start == (11.0, 0.0, math.pi)
     assert trials[0].goals == ((-9.0, 0.0),)
     assert (trials[0].limit_s, trials[0].shortest_m) == (100.0, 20.0)
-    scene = scene_of(trials[1].world)
+    scene = load_scene(trials[1].world)
     assert scene is not None
     (motion,) = [m.motion for m in scene.models if m.motion is not None]
     assert motion.at(5.0)[:2] == pytest.approx((0.0, 0.0))

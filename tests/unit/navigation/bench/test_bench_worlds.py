@@ -8,9 +8,9 @@ import pytest
 
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.navigation.bench.barn import barn_trials, reference_length
-from navette.navigation.bench.generators import GENERATORS, generate
 from navette.navigation.bench.suites import suite_trials
 from navette.navigation.bench.trial import barn_score
+from navette.navigation.worlds.generators import GENERATORS, generate
 
 
 @pytest.mark.parametrize("kind", GENERATORS)

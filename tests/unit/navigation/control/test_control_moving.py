@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.control.moving_obstacles import safe_share
+from navette.navigation.control.moving_obstacles import counts_as_static, safe_share
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.predictive_follower import PredictiveFollower
 from navette.navigation.control.records import FollowerInputs
@@ -108,3 +108,23 @@ def test_discs_expire_and_cover_points_and_cells() -> None:
     assert kept[spec.cell_of(1.0, 1.0)] == -1
     assert kept[spec.cell_of(1.0, 1.6)] == 100
     assert (cells == 100).all()
+
+
+@pytest.mark.parametrize(
+    ("speed_mps", "counting"), [(0.0, [0, 3]), (1.5, [0, 1, 3]), (-1.5, [0, 1, 3])]
+)
+def test_what_the_robot_reaches_before_it_stops_counts_where_it_is(
+    speed_mps: float, counting: list[int]
+) -> None:
+    """A wall of which more and more is seen is taken for an obstacle that recedes."""
+    params = ControlParams(
+        footprint_m=(0.3, 0.2, -0.3, 0.2, -0.3, -0.2, 0.3, -0.2),
+        deceleration_mps2=1.5,
+    )
+    points = np.array([(0.35, 0.1), (0.9, 0.1), (2.0, 0.1), (2.0, 3.0)])
+    discs = np.array([(1.2, 0.1, 0.5, 0.0, 0.8)])
+    kept = counts_as_static(points, discs, Pose2(0, 0, 0), speed_mps, params)
+    assert np.flatnonzero(kept).tolist() == counting
+    discs[0, 2] = -0.5
+    kept = counts_as_static(points, discs, Pose2(0, 0, 0), speed_mps, params)
+    assert np.flatnonzero(kept).tolist() == [3], "it comes closer: prediction avoids it"

@@ -9,6 +9,9 @@ from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec
 from navette.navigation.localization.amcl import AmclParams
 from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.global_search import search_map
+from navette.navigation.localization.amcl.hypotheses import hypotheses
+from navette.navigation.localization.amcl.likelihood_field import LikelihoodField
 from navette.navigation.localization.amcl.localizer import (
     Located,
     MapLocalizer,
@@ -58,6 +61,37 @@ def drive(
 # Below the locker's view at first, then turning towards it.
 AHEAD = [Pose2(6.0 + 0.1 * k, 2.4, 0.0) for k in range(15)]
 TURN = [Pose2(7.4, 2.4, 0.1 * k) for k in range(1, 26)]
+
+
+def test_cells_that_fit_another_room_better_do_not_decide() -> None:
+    """The walls of the robot's own room are drawn a cell too far away."""
+    cells = twin_rooms(mark=False)
+    drawn = cells.copy()
+    drawn[1, 2:98] = drawn[98, 2:98] = drawn[2:98, 1] = drawn[2:98, 98] = 0
+    pose, other = Pose2(2.4, 2.4, 0.5), Pose2(7.4, 2.4, 0.5)
+    points = scan(cells, pose)
+    field = LikelihoodField.of(drawn, SPEC, sigma=0.15, random=0.1, reach_m=2.0)
+    own, wrong = field.scores(np.array([pose, other]), points)
+    assert wrong > own + 0.012
+    found = hypotheses(field, points, other)
+    away = [Pose2(*each).distance_to(pose) for each in found.poses.tolist()]
+    assert len(found.poses) == 2
+    assert min(away) < 0.1
+
+
+def test_neighbours_of_a_place_that_fits_do_not_displace_the_others() -> None:
+    """Twelve equal rooms: all of them are candidates."""
+    room = twin_rooms(mark=False)[:, :100]
+    cells = np.tile(room, (3, 4))
+    spec = GridSpec(CELL_M, 400, 300, Pose2(0.0, 0.0, 0.0))
+    field = LikelihoodField.of(cells, spec, sigma=0.15, random=0.1, reach_m=2.0)
+    points = scan(twin_rooms(mark=False), Pose2(2.4, 2.4, 0.5))
+    found = search_map(field, points)
+    for row in range(3):
+        for column in range(4):
+            there = np.array([2.4 + ROOM_M * column, 2.4 + ROOM_M * row])
+            away = np.hypot(*(found.poses[:, :2] - there).T)
+            assert (away < 0.15).any()
 
 
 def test_equal_rooms_are_not_claimed() -> None:

@@ -391,3 +391,17 @@ def test_an_initial_pose_in_an_unknown_frame_is_dropped() -> None:
         graph.run_for(0.1)
         assert pose_of(estimates.last)[0] == pytest.approx(0.0)
         assert sum(node.dropped_inputs.values()) == 1
+
+
+def test_beside_a_node_that_locates_the_robot_a_pose_in_the_map_is_for_that_node() -> (
+    None
+):
+    with GraphHarness() as graph:
+        node, estimates = started(graph, **WHEELS, publish_status=False)
+        graph.publish("/wheels", wheels(0.0, 0.0))
+        graph.run_for(0.1)
+        graph.publish("/initialpose", initial_pose(5.0, 0.0, 0.0, frame="map"))
+        graph.publish("/wheels", wheels(0.1, 0.0))
+        graph.run_for(0.1)
+        assert pose_of(estimates.last)[0] == pytest.approx(0.0)
+        assert not node.dropped_inputs

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import (
+    GridSpec,
+    exact_clearances,
+    make_obstacles,
+    make_outline,
+)
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
 
@@ -86,3 +91,55 @@ def test_a_close_map_has_obstacles_only_where_beams_ended() -> None:
     assert closer.occupancy[lonely] == 100
     for x, y_ in ends.tolist():
         assert fine.contains(*fine.cell_of(x, y_))
+
+
+def bay() -> tuple[np.ndarray, GridSpec]:
+    """A lane of 0.6 m, and a bay of 1.2 m × 0.6 m beside it."""
+    spec = GridSpec(0.05, 120, 40)
+    lethal = np.ones(spec.shape, np.bool_)
+    lethal[4:16, 2:118] = False
+    lethal[16:28, 60:84] = False
+    return lethal, spec
+
+
+@pytest.mark.parametrize(
+    ("drive", "enters"),
+    [("differential", False), ("ackermann", False), ("omni", True)],
+)
+def test_only_an_omnidirectional_drive_slides_into_a_bay(
+    drive: str, enters: bool
+) -> None:
+    lethal, spec = bay()
+    start = Pose2(1.0, 0.5, 0.0)
+    space = BodySpace(lethal, spec, BODY, start, margin_m=0.03)
+    poses = space.driven(drive, 0.8 if drive == "ackermann" else 0.0)
+    assert poses is not None
+    path = poses.path_to(np.array([spec.cell_of(3.6, 1.1)]))
+    assert (path is not None) == enters
+    assert poses.path_to(np.array([spec.cell_of(5.0, 0.5)])) is not None
+
+
+@pytest.mark.parametrize(
+    ("drive", "radius_m"), [("differential", 0.0), ("ackermann", 0.8)]
+)
+def test_a_path_of_driven_poses_keeps_the_margin_and_the_drive(
+    drive: str, radius_m: float
+) -> None:
+    lethal, spec = wall(0.56)
+    start = Pose2(0.9, 1.2, 0.4)
+    space = BodySpace(lethal, spec, BODY, start, margin_m=0.04)
+    driven = space.driven(drive, radius_m)
+    assert driven is not None
+    path = driven.path_to(np.array([spec.cell_of(3.2, 2.0)]))
+    assert path is not None
+    assert path[0] == pytest.approx(start, abs=1e-6)
+    obstacles = make_obstacles(lethal.astype(np.uint8), spec)
+    clearance = exact_clearances(obstacles, make_outline(BODY), path, 0.1)
+    assert clearance.min() > 0.04 - 0.75 * spec.resolution
+    steps, turns = np.diff(path[:, :2], axis=0), np.diff(path[:, 2])
+    turns = np.abs(np.remainder(turns + np.pi, 2 * np.pi) - np.pi)
+    middle = path[:-1, 2] + np.diff(np.unwrap(path[:, 2])) / 2
+    aside = np.cos(middle) * steps[:, 1] - np.sin(middle) * steps[:, 0]
+    assert np.abs(aside).max() < 1e-4
+    if radius_m:
+        assert (turns * radius_m <= 1.01 * np.hypot(*steps.T)).all()

@@ -6,7 +6,7 @@ from planning_worlds import empty_map, fill
 
 from navette.geometry import Footprint
 from navette.navigation.grids import exact_clearances, make_outline
-from navette.navigation.planning import Planner, PlannerParams
+from navette.navigation.planning import NewMap, Planner, PlannerParams
 from navette.navigation.planning.centring import centred
 from navette.navigation.planning.path_shape import headed
 from navette.navigation.planning.planning_grid import (
@@ -81,7 +81,7 @@ def test_lines_of_any_number_of_points_move_to_the_middle(count: int) -> None:
     fill(occupancy, spec, (1, 5), (0, 1.6))
     fill(occupancy, spec, (1, 5), (2.4, 4))
     planner = Planner(PlannerParams(footprint_m=SQUARE, clearance_margin_m=0.03))
-    planner.set_map(occupancy, spec)
+    planner.set_map(NewMap(occupancy, spec))
     line = np.column_stack([np.linspace(2, 4, count), np.full(count, 2.05)])
     line[[0, -1], 1] = 2.0
     moved = centred(line, planner.grid(), planner.body)

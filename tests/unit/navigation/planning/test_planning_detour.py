@@ -7,7 +7,7 @@ import pytest
 from planning_worlds import empty_map
 
 from navette.geometry import Pose2
-from navette.navigation.planning import Planner, PlannerParams
+from navette.navigation.planning import NewMap, Planner, PlannerParams
 from navette.navigation.planning.detour import DetourPlanner
 from navette.navigation.planning.route import GridRouter
 
@@ -17,7 +17,7 @@ PARAMS = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
 def detour_planner(*, centres: bool) -> DetourPlanner:
     planner = Planner(PARAMS)
     occupancy, spec = empty_map(6, 6)
-    planner.set_map(occupancy, spec)
+    planner.set_map(NewMap(occupancy, spec))
     router = GridRouter(PARAMS, centres=centres)
     unseen = np.zeros(spec.shape, np.uint8)
     return DetourPlanner(planner.grid(), planner.body, PARAMS, router, unseen)

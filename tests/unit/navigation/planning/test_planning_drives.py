@@ -10,7 +10,15 @@ from planning_worlds import empty_map, fill
 from navette.errors import ParameterError
 from navette.geometry import DRIVES, Pose2
 from navette.navigation.control import ControlParams
-from navette.navigation.planning import Goal, Planner, PlannerParams
+from navette.navigation.grids import GridSpec
+from navette.navigation.planning import (
+    Goal,
+    NewMap,
+    Outcome,
+    Planner,
+    PlannerParams,
+)
+from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.lattice_motions import MOVES, Motions
 from navette.navigation.planning.path_shape import bend, directions, lengths
 
@@ -32,7 +40,7 @@ def plan(drive: str, start: Pose2, goal: Goal) -> np.ndarray:
     occupancy, spec = empty_map(8, 8)
     fill(occupancy, spec, (3.8, 4.2), (0.0, 4.5))
     planner = Planner(PARAMS[drive])
-    planner.set_map(occupancy, spec)
+    planner.set_map(NewMap(occupancy, spec))
     found = planner.plan(start, goal)
     assert found.outcome.has_path
     return found.poses
@@ -81,7 +89,7 @@ def test_an_omnidirectional_drive_moves_sideways_between_walls() -> None:
     fill(occupancy, spec, (0.0, 1.65), (0.0, 4.0))
     fill(occupancy, spec, (2.35, 4.0), (0.0, 4.0))
     planner = Planner(PARAMS["omni"])
-    planner.set_map(occupancy, spec)
+    planner.set_map(NewMap(occupancy, spec))
     poses = planner.plan(Pose2(2.0, 0.6, 0.0), Goal(2.0, 3.2, 0.0)).poses
     assert math.dist(poses[-1, :2], (2.0, 3.2)) < 0.5
     assert np.abs(poses[:, 2]).max() < 0.2
@@ -127,7 +135,7 @@ def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
         footprint_m=(0.455, 0.15, -0.125, 0.15, -0.125, -0.15, 0.455, -0.15),
     )
     planner = Planner(params)
-    planner.set_map(occupancy, spec, np.array(walls))
+    planner.set_map(NewMap(occupancy, spec, np.array(walls)))
     found = planner.plan(Pose2(1.5, 4.6, yaw), Goal(6.5, 4.0))
     assert found.outcome.has_path
     assert found.margin_m > 0.02
@@ -144,7 +152,67 @@ def test_a_robot_off_the_middle_of_a_passage_plans_what_the_controller_allows() 
     walls = np.array([(x, y) for y in (low, high) for x in along])
     body = (0.3, 0.2, -0.3, 0.2, -0.3, -0.2, 0.3, -0.2)
     planner = Planner(replace(PARAMS["differential"], footprint_m=body))
-    planner.set_map(occupancy, spec, walls)
+    planner.set_map(NewMap(occupancy, spec, walls))
     found = planner.plan(Pose2(3.0, 4.01, 0.0), Goal(7.0, 4.0))
     assert found.outcome.has_path
     assert found.margin_m >= ControlParams().collision_margin_m
+
+
+def lane_with_a_bay() -> tuple[np.ndarray, GridSpec]:
+    """A room, a lane of 0.4 m from it, and a bay of 1 m × 0.4 m beside the lane."""
+    spec = GridSpec(0.05, 160, 160)
+    occupancy = np.zeros(spec.shape, np.int8)
+    fill(occupancy, spec, (4.0, 8.0), (0.0, 8.0))
+    fill(occupancy, spec, (4.0, 7.6), (1.0, 1.4), 0)
+    fill(occupancy, spec, (6.0, 7.0), (1.4, 1.8), 0)
+    return occupancy, spec
+
+
+def test_a_car_has_no_path_into_a_bay_that_only_sliding_enters() -> None:
+    """The body fits everywhere, and the search has far more poses than budget."""
+    params = replace(
+        PARAMS["ackermann"],
+        goal_tolerance_m=0.1,
+        path_end_tolerance_m=0.05,
+        footprint_m=(0.775, 0.15, -0.125, 0.15, -0.125, -0.15, 0.775, -0.15),
+        max_expansions=4_000,
+    )
+    planner = Planner(params)
+    planner.set_map(NewMap(*lane_with_a_bay()))
+    found = planner.plan(Pose2(2.0, 5.0, 2.0), Goal(6.175, 1.6))
+    assert found.outcome is Outcome.NO_PATH
+
+
+@pytest.mark.parametrize(
+    ("drive", "yaw"),
+    [
+        ("differential", 3.1),
+        ("omni", 3.1),
+        ("ackermann", 3.1),
+        ("ackermann", 0.0),
+        ("ackermann", None),
+    ],
+)
+def test_a_path_through_a_tight_place_is_found_after_the_search_limit(
+    drive: str, yaw: float | None
+) -> None:
+    """A lane in which the body cannot turn, entered from a corner beside it."""
+    params = replace(
+        PARAMS[drive],
+        footprint_m=(0.775, 0.15, -0.125, 0.15, -0.125, -0.15, 0.775, -0.15),
+        max_expansions=100,
+    )
+    planner = Planner(params)
+    occupancy, spec = lane_with_a_bay()
+    fill(occupancy, spec, (4.0, 7.6), (0.9, 1.4), 0)
+    planner.set_map(NewMap(occupancy, spec))
+    found = planner.plan(Pose2(2.0, 5.0, 2.0), Goal(6.4, 1.15, yaw))
+    assert found.outcome.has_path
+    assert found.expansions >= params.max_expansions, "the search has no path"
+    grid = planner.map.opened(found.margin_m, Pose2(2.0, 5.0, 2.0))
+    assert check_path(found.poses, grid, planner.body).fits
+    if yaw is not None:
+        assert abs(math.remainder(found.poses[-1, 2] - yaw, math.tau)) <= 0.2
+    if drive == "ackermann":
+        arcs = lengths(found.poses) / RADIUS_M
+        assert (turned(found.poses) <= 1.02 * arcs + 1e-6).all()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import NO_CELLS, UNKNOWN, CellWindow, GridSpec
-from navette.navigation.planning import PlannerParams
+from navette.navigation.planning import NewMap, PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.planning_grid import (
     BodyShape,
@@ -113,7 +113,7 @@ def test_a_goal_beyond_the_largest_size_stays_outside() -> None:
 
 def test_a_goal_far_outside_the_map_gets_a_path() -> None:
     planner = Planner(PARAMS)
-    planner.set_map(np.zeros(SPEC.shape, np.int8), SPEC)
+    planner.set_map(NewMap(np.zeros(SPEC.shape, np.int8), SPEC))
     plan = planner.plan(Pose2(2.0, 5.0, 0.0), Goal(150.0, 5.0))
     assert plan.outcome.has_path
     assert plan.poses[-1, :2] == pytest.approx((150.0, 5.0))
@@ -123,12 +123,12 @@ def test_copies_keep_their_map_when_another_detaches() -> None:
     rng = np.random.default_rng(2)
     cells = random_map(rng)
     planner = Planner(PARAMS)
-    planner.set_map(cells, SPEC)
+    planner.set_map(NewMap(cells, SPEC))
     kept = planner.copy()
     before = kept.grid().cost.copy()
     planner.grid()
     planner = kept.copy()
     planner.map.detach()
-    planner.set_map(np.zeros(SPEC.shape, np.int8), SPEC)
+    planner.set_map(NewMap(np.zeros(SPEC.shape, np.int8), SPEC))
     np.testing.assert_array_equal(kept.grid().cost, before)
     assert planner.grid().cost.max() == 0

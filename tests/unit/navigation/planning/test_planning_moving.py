@@ -5,6 +5,7 @@ import pytest
 
 from navette.geometry import Pose2
 from navette.navigation.grids import NO_DISCS, GridSpec
+from navette.navigation.planning import NewMap
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.traversal import LETHAL
@@ -15,7 +16,7 @@ SPEC = GridSpec(0.1, 100, 60, Pose2(0.0, -3.0, 0.0))
 def _planner(occupancy: np.ndarray | None = None) -> Planner:
     planner = Planner(PlannerParams())
     cells = np.zeros(SPEC.shape, np.int8) if occupancy is None else occupancy
-    planner.set_map(cells, SPEC)
+    planner.set_map(NewMap(cells, SPEC))
     return planner
 
 

@@ -10,6 +10,7 @@ from navette.geometry import Pose2
 from navette.navigation.planning import (
     Goal,
     Navigator,
+    NewMap,
     Outcome,
     Phase,
     PlannerParams,
@@ -35,7 +36,7 @@ class Drive:
         if occupancy is not None:
             self.occupancy = occupancy
         self.navigator = Navigator(PlannerParams(**params))
-        self.navigator.set_map(self.occupancy, self.spec)
+        self.navigator.set_map(NewMap(self.occupancy, self.spec))
         self.pose, self.now_ns, self.moving = Pose2(1, 4, 0), 0, True
         self.published: list[np.ndarray] = []
         self.path = np.empty((0, 3))
@@ -65,7 +66,7 @@ class Drive:
     def change_map(self, x, y, value: int = 100) -> None:
         self.occupancy = self.occupancy.copy()
         fill(self.occupancy, self.spec, x, y, value)
-        self.navigator.set_map(self.occupancy, self.spec)
+        self.navigator.set_map(NewMap(self.occupancy, self.spec))
 
     @property
     def message(self) -> str:
@@ -120,7 +121,7 @@ def test_goals_wait_for_map_and_odometry_with_a_status() -> None:
     robot = RobotMotion(Pose2(1, 1, 0), 0, 0)
     navigator.step(robot, 2, stale=False)
     assert navigator.report.message == Phase.WAITING_FOR_MAP
-    navigator.set_map(*empty_map(5, 5))
+    navigator.set_map(NewMap(*empty_map(5, 5)))
     navigator.step(robot, 3, stale=False)
     assert navigator.report.message == Phase.FOLLOWING
 

@@ -16,6 +16,7 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
 from navette.navigation.grids import CellWindow
+from navette.navigation.planning import NewMap
 from navette.navigation.planning.planner import Planner
 from navette.runtime import Parameter, StaticTransformBroadcaster
 from navette.testing import GraphHarness
@@ -321,6 +322,6 @@ def test_parts_give_the_same_grid_as_whole_maps(graph: GraphHarness, seed: int) 
         world.send_part(window)
         graph.run_for(0.25)
         fresh = Planner(world.node.params)
-        fresh.set_map(world.occupancy.copy(), world.spec)
+        fresh.set_map(NewMap(world.occupancy.copy(), world.spec))
         grid = world.node._runner.navigator.planner.grid()
         np.testing.assert_array_equal(grid.cost, fresh.grid().cost)

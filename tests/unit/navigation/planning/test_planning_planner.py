@@ -18,6 +18,7 @@ from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec, exact_clearances, make_outline
 from navette.navigation.planning import (
     Goal,
+    NewMap,
     Outcome,
     Plan,
     Planner,
@@ -33,7 +34,7 @@ def planner(
     occupancy: np.ndarray, spec: GridSpec, params: PlannerParams = SMALL
 ) -> Planner:
     made = Planner(params)
-    made.set_map(occupancy, spec)
+    made.set_map(NewMap(occupancy, spec))
     return made
 
 
@@ -311,7 +312,7 @@ def test_beside_the_end_of_a_wall_the_path_leaves_it_before_it_turns() -> None:
     rows_columns = {spec.cell_of(x, y) for x, y in wall.tolist()}
     occupancy[tuple(np.array(sorted(rows_columns)).T)] = 100
     made = Planner(PlannerParams(footprint_m=husky))
-    made.set_map(occupancy, spec, wall)
+    made.set_map(NewMap(occupancy, spec, wall))
     plan = made.plan(Pose2(-1.293, -5.312, -2.287), Goal(-3.2, -5.2))
     outline = make_outline(made.map.footprint)
     clearance = exact_clearances(made.grid().exact_obstacles, outline, plan.poses, 0.5)

@@ -164,3 +164,26 @@ def test_a_scan_of_another_place_does_not_match() -> None:
 def test_too_few_points_do_not_match() -> None:
     prior = PosePrior(HERE, np.eye(3))
     assert match(LOCAL, points_at(HERE)[:5], prior, PARAMS) is None
+
+
+def test_a_surface_that_few_points_meet_exactly_wins_over_many_blurred_ones() -> None:
+    """Scans that share a third of their surfaces: several maxima score higher."""
+    arm = np.arange(0.0, 5.0, 0.05)
+    zero, one = np.zeros_like(arm), np.ones_like(arm)
+    points = np.concatenate(
+        [
+            np.column_stack([arm, zero, zero, one]),
+            np.column_stack([zero, arm, one, zero]),
+        ]
+    )
+    noise = np.random.default_rng(1)
+    parts = [points[noise.random(len(points)) < 0.4]]
+    for offset in (-1.2, -0.6, 0.6, 1.2):
+        blurred = points[noise.random(len(points)) < 0.55] + (offset, offset, 0.0, 0.0)
+        blurred[:, :2] += noise.normal(0.0, 0.06, (len(blurred), 2))
+        parts.append(blurred)
+    local = LocalMap(np.concatenate(parts), PARAMS, levels=6)
+    prior = PosePrior(Pose2(0.6, 0.6, 0.0), np.diag([1 / 0.6**2] * 2 + [1 / 0.01**2]))
+    found = match(local, points, prior, PARAMS)
+    assert found is not None
+    assert math.hypot(found.pose.x, found.pose.y) < 0.05

@@ -20,7 +20,10 @@ _OTHERS = {float: _NUMBERS, int: _INTEGERS, bool: ("7", "perhaps"), str: ()}
 #: Without an input the filter has another error.
 NEEDED = {"ekf": ("-p", "odom0:=/odom")}
 #: Any seed is allowed.
-ANY = {"seed": ("-9223372036854775808", "1.5")}
+ANY = {
+    "seed": ("-9223372036854775808", "1.5"),
+    "random_seed": ("-9223372036854775808", "1.5"),
+}
 
 
 def values_of(params: type[Params], name: str) -> tuple[str, ...]:

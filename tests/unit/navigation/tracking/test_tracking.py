@@ -12,7 +12,14 @@ from navette.navigation.tracking import (
     TrackedObstacle,
     TrackingParams,
 )
-from navette.navigation.tracking.clusters import fit_disc, segment
+from navette.navigation.tracking.clusters import (
+    Cluster,
+    convex_parts,
+    fit_disc,
+    is_whole,
+    segment,
+)
+from navette.navigation.tracking.tracks import Track
 from navette.sim import Scene, SimParams, Simulator, World, load_robot
 
 PERIOD_NS = 50_000_000
@@ -78,6 +85,45 @@ def test_cylinders_that_pass_each_other_keep_their_tracks(gap_m: float) -> None:
             near = min(found[i], key=lambda t, x=x, y=y: math.hypot(t.x - x, t.y - y))
             assert math.hypot(near.x - x, near.y - y) < 0.15, f"at {seconds:.2f} s"
             assert near.vy == pytest.approx(vy, abs=0.35), f"at {seconds:.2f} s"
+
+
+def test_cylinders_that_move_side_by_side_are_two_from_the_beginning() -> None:
+    """Their returns have no gap at any time, and are wider than one may be."""
+    world = World().add_walls((16, 16))
+    for x, y in ((4.0, -2.0), (4.0, -2.9)):
+        world.add_actor([(0, x, y), (4, x, y + 4)], 0.5, loop=False)
+    last = _track(_simulator(world), 2.5)[-1]
+    assert len(last) == 2
+    for each, y in zip(sorted(last, key=lambda t: t.y), (-0.4, 0.5), strict=True):
+        assert (each.x, each.y) == pytest.approx((4.0, y), abs=0.1)
+        assert each.vy == pytest.approx(1.0, abs=0.2)
+        assert each.radius_m == pytest.approx(0.5, abs=0.1)
+
+
+def test_radius_is_learned_when_the_whole_obstacle_is_seen() -> None:
+    """At first a part of the circle is seen: its near side stays where it is."""
+    params = TrackingParams()
+    track = Track.begin(1, Cluster(3.2, 0, 0.2, False, False, 9), 0, params)
+    track.predict(PERIOD_NS, params.acceleration_mps2)
+    track.update(Cluster(3.5, 0, 0.5, True, True, 9), (0.0, 0.0), params)
+    assert track.radius_m == pytest.approx(0.5)
+    assert track.x == pytest.approx(3.5)
+    assert math.hypot(track.vx, track.vy) < 1e-9
+    track.predict(2 * PERIOD_NS, params.acceleration_mps2)
+    track.update(Cluster(3.3, 0, 0.3, True, False, 9), (0.0, 0.0), params)
+    assert track.radius_m == pytest.approx(0.5)  # hidden again
+
+
+def test_velocity_holds_where_the_field_of_view_cuts_the_obstacle() -> None:
+    """The robot turns away; fewer and fewer beams hit the cylinder, then none."""
+    world = World().add_walls((16, 16))
+    world.add_actor([(0, 2, -1.5), (6, 2, 1.5)], 0.5, loop=False)
+    found = _track(_simulator(world), 3.2, (0.0, 0.9))
+    for i in range(24, 64):
+        (each,) = found[i]
+        seconds = (i + 1) * 0.05
+        assert (each.vx, each.vy) == pytest.approx((0.0, 0.5), abs=0.15), seconds
+        assert each.y == pytest.approx(0.5 * seconds - 1.5, abs=0.1), seconds
 
 
 def test_nothing_moves_in_a_still_world_with_noise_seen_from_a_moving_robot() -> None:
@@ -163,3 +209,37 @@ def test_runs_end_at_gaps_but_not_at_one_lost_beam() -> None:
     runs = segment(points, valid, away, 0.25)
     assert runs.tolist() == [[0, 24], [24, 41]]
     assert math.isclose(away[23], 2.0)
+
+
+def test_run_of_two_discs_is_divided_where_they_meet_and_one_disc_is_not() -> None:
+    def near_side(x: float, y: float) -> np.ndarray:
+        angles = np.linspace(1.5 * math.pi, 0.5 * math.pi, 40)
+        return np.column_stack([x + 0.5 * np.cos(angles), y + 0.5 * np.sin(angles)])
+
+    low, high = near_side(3.0, -0.4), near_side(3.2, 0.4)
+    low, high = low[low[:, 1] < 0.0], high[high[:, 1] > 0.0]
+    both = np.ascontiguousarray(np.concatenate([low, high]))
+    for points, border in ((both, len(low)), (both[::-1].copy(), len(high))):
+        first, second = convex_parts(points, (0.0, 0.0), 0.075)
+        assert abs(len(first) - border) <= 1
+        assert [*first, *second] == list(range(len(points)))
+    (alone,) = convex_parts(np.ascontiguousarray(near_side(3, 0)), (0.0, 0.0), 0.075)
+    assert len(alone) == 40
+
+
+@pytest.mark.parametrize(
+    ("first", "stop", "turn", "whole"),
+    [
+        (2, 4, 1.0, True),  # both neighbours are farther
+        (4, 6, 1.0, False),  # the one before is nearer
+        (0, 2, 1.0, False),  # the field of view ends
+        (8, 10, 1.0, False),
+        (8, 10, 2 * math.pi, False),  # its neighbour is the first beam: nearer
+        (6, 8, 1.0, False),  # a lost beam beside it
+    ],
+)
+def test_whole_is_what_beams_pass_on_both_sides(
+    first: int, stop: int, turn: float, whole: bool
+) -> None:
+    ranges = np.array([3, 3, 2, 2, 5, 5, 4, 4, math.nan, 6], np.float32)
+    assert is_whole(ranges, first, stop, turn) is whole

@@ -104,6 +104,7 @@ def test_a_dataclass_is_its_own_parameters_and_a_function_has_none(
          r"mine.py:1\): area\(self, width\) cannot be called as area\(width, height\)"),
         ("class Mine:\n    def area(self, w, h): ...", ":Other", "known: Mine"),
         ("x = 1 / 0", ":Mine", r"cannot be imported: ZeroDivisionError \(line 1\)"),
+        ("class Mine:\n    def area(self, w, h): ...", ":Mien", "shape .*unknown name"),
         ("def area(:", ":Mine", r"cannot be imported: SyntaxError \(line 1\)"),
         ("import not_there_at_all", ":Mine", "ModuleNotFoundError.*not_there_at_all"),
         ("area = 3", ":area", "of type int; expected a class with area"),
@@ -124,7 +125,7 @@ def test_errors_name_file_class_and_what_is_wrong(
     ("place", "match"),
     [
         ("circle", "unknown shape 'circle'; known: box; your own: FILE.py:NAME"),
-        ("nowhere.py:Mine", "nowhere.py: no such file"),
+        ("nowhere.py:Mine", "shape nowhere.py:Mine: nowhere.py: no such file in /"),
         ("no_such_module_x:Mine", "'no_such_module_x' is not installed"),
     ],
 )
@@ -194,6 +195,7 @@ def test_a_fault_has_the_users_own_lines(tmp_path: Path) -> None:
         ("fast", "returned str 'fast'; expected two numbers"),
         (None, "returned NoneType|returned nan|shape"),
         ([1.0], r"shape \(1,\); expected two numbers"),
+        (0.5, r"returned 0.5 alone; expected two numbers"),
         ([1.0, np.nan], "returned nan at index 1; expected two numbers, all finite"),
     ],
 )

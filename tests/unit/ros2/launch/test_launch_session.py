@@ -324,6 +324,8 @@ def test_launch_files_by_package_or_path(workspace: Path) -> None:
     words = ["parlance", "it.launch.py", "a:=b"]
     assert find_launch_file(words) == (file, ["a:=b"])
     assert find_launch_file([str(file), "a:=b"]) == (file, ["a:=b"])
+    multisim, _ = find_launch_file(["turtlesim", "multisim.launch.py"])  # built in
+    assert "Arguments" in show_arguments(multisim)
     for wrong in (["nowhere.py"], ["parlance", "nothing.py"], ["unknown", "x.py"]):
         with pytest.raises(NavetteError):
             find_launch_file(wrong)

@@ -10,7 +10,13 @@ import yaml
 
 import navette
 from navette.errors import FileFormatError, InvalidNameError
-from navette.ros2.workspace import create_package, find_package, read_manifest
+from navette.ros2.workspace import (
+    PackageAbout,
+    create_bare_package,
+    create_package,
+    find_package,
+    read_manifest,
+)
 
 SOURCE = Path(navette.__file__).parent.parent
 
@@ -71,6 +77,46 @@ def test_contents_of_a_package(tmp_path: Path) -> None:
     assert "$base/lib/my_robot" in (made / "setup.cfg").read_text()
     for path in made.rglob("*.py"):
         compile(path.read_text(), str(path), "exec")
+
+
+def test_a_bare_python_package_has_the_build_files_of_ros(tmp_path: Path) -> None:
+    about = PackageAbout(description="A & B", license="Apache-2.0", email="a@b.c")
+    made = create_bare_package(
+        "my_package",
+        tmp_path,
+        "ament_python",
+        node="my_node",
+        dependencies=["rclpy", "std_msgs"],
+        about=about,
+    )
+    files = {str(p.relative_to(made)) for p in made.rglob("*") if p.is_file()}
+    assert files == {
+        "package.xml",
+        "setup.cfg",
+        "setup.py",
+        "resource/my_package",
+        "my_package/__init__.py",
+        "my_package/my_node.py",
+    }
+    manifest = read_manifest(made / "package.xml")
+    assert manifest.build_type == "ament_python"
+    assert manifest.dependencies[:2] == ("rclpy", "std_msgs")
+    assert "<description>A &amp; B</description>" in (made / "package.xml").read_text()
+    assert "description='A & B'," in (made / "setup.py").read_text()
+    (executable,) = find_package("my_package", made).executables()
+    assert (executable.name, executable.module) == ("my_node", "my_package.my_node")
+
+
+def test_a_bare_cmake_package(tmp_path: Path) -> None:
+    made = create_bare_package("cpp", tmp_path, "ament_cmake", node="my_node")
+    assert read_manifest(made / "package.xml").build_type == "ament_cmake"
+    assert "add_executable(my_node" in (made / "CMakeLists.txt").read_text()
+    assert (made / "src" / "my_node.cpp").is_file()
+    bare = create_bare_package("own_interfaces", tmp_path, "ament_cmake")
+    names = {path.name for path in bare.rglob("*")}
+    assert names == {"package.xml", "CMakeLists.txt"}
+    with pytest.raises(InvalidNameError, match="'cmake' is not a build type"):
+        create_bare_package("other", tmp_path, "cmake")
 
 
 @pytest.mark.parametrize(

@@ -276,3 +276,20 @@ def test_activate_makes_modules_and_interfaces_importable(
     assert sys.path[-2:] == [str(first), str(second)]
     pair = msgs.get_interface("aa_overlay_msgs/msg/Pair")()
     assert pair.left.x == 0.0
+
+
+def test_programs_of_a_package_in_cpp_are_replaced(tmp_path: Path) -> None:
+    make(tmp_path / "ws" / "src" / "turtlesim")
+    package = find_package("turtlesim", tmp_path / "ws")
+    assert package.origin is Origin.SOURCE
+    assert "turtlesim_node" in {each.name for each in package.executables()}
+    assert package.executable("turtlesim_node").module == "navette.cli.turtlesim"
+
+
+def test_windows_of_ros_are_the_live_view(tmp_path: Path) -> None:
+    for name in ("rviz2", "rqt_graph", "rqt_console"):
+        executable = find_package(name, tmp_path).executable(name)
+        assert (executable.module, executable.attribute) == (
+            "navette.cli.live_view",
+            "main",
+        )

@@ -22,8 +22,9 @@ _SPACING_M = 0.25
 _MOST_POSES = 600_000
 _BEAMS = 24
 _BLUR_M, _RANDOM = 0.35, 0.2
-_REFINED = 400  # coarse poses that are refined …
-_CANDIDATES = 100  # … and at most so many different ones of them returned
+_REFINED = 250  # coarse poses that are refined, the best ones …
+_PLACES, _RANKED = 250, 8000  # … and those of so many places, among so many
+_CANDIDATES = 100  # and at most so many different ones of them are returned
 _APART_M, _APART_RAD = 0.5, 0.35
 
 
@@ -46,9 +47,13 @@ def search_map(field: LikelihoodField, points: Points) -> Candidates:
     few = _spread(points, _BEAMS)
     poses = _coarse_poses(field)
     coarse = field.blurred(_BLUR_M, _RANDOM).scores(poses, few)
-    count = min(_REFINED, len(poses))
+    count = min(_RANKED, len(poses))
     best = np.argpartition(-coarse, count - 1)[:count]
     best = best[np.argsort(-coarse[best], kind="stable")]
+    # Neighbours of a place that fits well must not displace the other places.
+    bins = np.floor(poses[best] / (_APART_M, _APART_M, _APART_RAD))
+    first_of_place = np.sort(np.unique(bins, axis=0, return_index=True)[1])[:_PLACES]
+    best = best[np.union1d(np.arange(min(_REFINED, count)), first_of_place)]
     refined, scores = field.refined(poses[best], points, 0.1, math.radians(3.0))
     order = np.argsort(-scores, kind="stable")
     chosen = different(refined[order], _CANDIDATES)

@@ -7,7 +7,8 @@ echo are not used.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,8 @@ class LikelihoodField:
         log_likelihood: (H, W) of a beam that ends in a cell; at most 0.
         outside: log likelihood of a beam that ends outside the map.
         free: (N, 2) row, column of the free cells.
+        sigma: standard deviation of a beam's end, m.
+        random: share of beams that hit something else, 0 … 1.
     """
 
     spec: GridSpec
@@ -41,6 +44,8 @@ class LikelihoodField:
     log_likelihood: NDArray[np.float32]
     outside: float
     free: NDArray[np.int64]
+    sigma: float
+    random: float
 
     @classmethod
     def of(
@@ -70,6 +75,8 @@ class LikelihoodField:
             _log_likelihood(distance, sigma, random),
             _log_likelihood(np.array([reach_m]), sigma, random).item(),
             free,
+            sigma,
+            random,
         )
 
     def blurred(self, sigma: float, random: float) -> "LikelihoodField":
@@ -81,6 +88,16 @@ class LikelihoodField:
             _log_likelihood(self.distance, sigma, random),
             _log_likelihood(np.array([reach]), sigma, random).item(),
             self.free,
+            sigma,
+            random,
+        )
+
+    @cached_property
+    def tolerant(self) -> "LikelihoodField":
+        """The field in which ends of beams within a cell of an obstacle are on it."""
+        away = np.maximum(self.distance - np.float32(self.spec.resolution), 0.0)
+        return replace(
+            self, log_likelihood=_log_likelihood(away, self.sigma, self.random)
         )
 
     def scores(self, poses: Poses, points: Points) -> NDArray[np.float64]:
@@ -110,6 +127,23 @@ class LikelihoodField:
                 np.ascontiguousarray(points), within_m,
             )
         )  # fmt: skip
+
+    def agreement(
+        self, poses: Poses, points: Points, within_m: float
+    ) -> NDArray[np.float64]:
+        """Return the share (M,) of poses from which each point is near an obstacle.
+
+        Args:
+            poses: (N, 3) x, y, yaw of the base in the map.
+            points: (M, 2) ends of the beams in the base frame, m.
+            within_m: largest distance from an obstacle.
+        """
+        near = np.zeros(len(points))
+        _agreement(
+            self.distance, _frame(self.spec), np.ascontiguousarray(poses),
+            np.ascontiguousarray(points), within_m, near,
+        )  # fmt: skip
+        return near
 
     def refined(
         self, poses: Poses, points: Points, step_m: float, step_rad: float
@@ -227,6 +261,24 @@ def _share_within(
         row, column = _cell_at(view, points[k, 0], points[k, 1], height, width)
         near += row >= 0 and distance[row, column] <= within
     return float(near / points.shape[0])
+
+
+@kernel
+def _agreement(
+    distance: Any,
+    frame: tuple[float, float, float, float],
+    poses: Any,
+    points: Any,
+    within: float,
+    near: Any,
+) -> None:
+    height, width = distance.shape
+    for i in range(poses.shape[0]):
+        view = _view_from(frame, poses[i, 0], poses[i, 1], poses[i, 2])
+        for k in range(points.shape[0]):
+            row, column = _cell_at(view, points[k, 0], points[k, 1], height, width)
+            near[k] += row >= 0 and distance[row, column] <= within
+    near /= poses.shape[0]
 
 
 @kernel

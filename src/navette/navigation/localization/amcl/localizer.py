@@ -95,7 +95,9 @@ class MapLocalizer:
             random=params.z_rand / (params.z_hit + params.z_rand),
             reach_m=params.laser_likelihood_max_dist,
         )
-        self.filter = ParticleFilter(params, field, np.random.default_rng(params.seed))
+        self.filter = ParticleFilter(
+            params, field, np.random.default_rng(params.used_seed)
+        )
         self.confidence = ConfidenceMonitor(params)
         self._updated: ScanView | None = None  # scan of the last update
         self._jumps = OdometryJumps()
@@ -145,7 +147,8 @@ class MapLocalizer:
                 motion = self._updated.odom_T_base.inverse() @ scan.odom_T_base
                 self.filter.predict(motion)
             self._updated = scan
-            self.filter.update(used)
+            is_localized = self.confidence.state is LocalizationState.LOCALIZED
+            self.filter.update(used, may_skip=is_localized)
         return self._report(scan, is_updated=True)
 
     def _follow_jump(self, scan: ScanView) -> None:
@@ -239,7 +242,8 @@ class MapLocalizer:
             return self.confidence.state
         found = self.filter.hypotheses(pose, points)
         best = Pose2(*found.poses[0].tolist())
-        if best.distance_to(pose) > _SAME_M and found.scores[0] > fit + _BETTER_FIT:
+        is_better = self.filter.fit(best, points) > fit + _BETTER_FIT
+        if best.distance_to(pose) > _SAME_M and is_better:
             self.filter.spread_over(found)
             self._updated = scan
             return self._doubt()

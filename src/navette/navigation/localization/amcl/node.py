@@ -6,6 +6,7 @@ to move in places that look alike. A robot whose scans stop matching the map is
 ``lost``: the last correction stays, navigation stops, and the whole map is searched.
 """
 
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -64,7 +65,7 @@ class AmclNode(StageNode):
     """Adaptive Monte Carlo localization with the names of Nav2's."""
 
     PARAMS = AmclParams
-    FIXED_AT_START: ClassVar = ("seed",)
+    FIXED_AT_START: ClassVar = ("seed", "random_seed", "scan_topic", "map_topic")
     INPUTS: ClassVar = (
         Input.of(topics.LIDAR, "laser scan", rate_hz=10.0, callback="on_scan"),
         Input.of(topics.ODOMETRY, "motion", rate_hz=10.0, callback="on_odometry"),
@@ -108,6 +109,16 @@ class AmclNode(StageNode):
             for name in _START
         ]
         return super().declare_params()
+
+    def inputs(self) -> tuple[Input, ...]:
+        names = {
+            topics.LIDAR.name: self.params.scan_topic,
+            topics.STATIC_MAP.name: self.params.map_topic,
+        }
+        return tuple(
+            replace(each, topic=names.get(each.topic, each.topic))
+            for each in self.INPUTS
+        )
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose of the odometry."""

@@ -3,11 +3,21 @@
 from dataclasses import dataclass
 
 from navette.errors import ParameterError
+from navette.msgs import topics
 from navette.params import Params, param
 
 
 def _noise(meaning: str) -> float:
     found: float = param(0.2, meaning, at_least=0.0, at_most=100.0)
+    return found
+
+
+def _beam_model(default: float) -> float:
+    found: float = param(
+        default,
+        "of the beam model only: no effect on the likelihood field, as in Nav2",
+        at_least=0.0,
+    )
     return found
 
 
@@ -25,7 +35,10 @@ class AmclParams(Params):
     transform_tolerance: float = param(
         1.0, "how far ahead map → odom is stamped, seconds", at_least=0.0, at_most=10.0
     )
+    scan_topic: str = param(topics.LIDAR.name, "topic of the scans")
+    map_topic: str = param(topics.STATIC_MAP.name, "topic of the known map")
     seed: int = param(0, "seed of the particles", at_least=0)
+    random_seed: int = param(-1, "seed instead of the other one; -1: none", at_least=-1)
 
     set_initial_pose: bool = param(
         False,
@@ -67,7 +80,9 @@ class AmclParams(Params):
     )
 
     laser_model_type: str = param(
-        "likelihood_field", "sensor model", choices=("likelihood_field",)
+        "likelihood_field",
+        "sensor model; both names are the product of the beams' likelihoods",
+        choices=("likelihood_field", "likelihood_field_prob"),
     )
     laser_likelihood_max_dist: float = param(
         2.0,
@@ -95,6 +110,33 @@ class AmclParams(Params):
     )
     z_rand: float = param(
         0.1, "weight of beams that hit something else", at_least=1e-6, at_most=1e3
+    )
+    z_short: float = _beam_model(0.05)
+    z_max: float = _beam_model(0.05)
+    lambda_short: float = _beam_model(0.1)
+    do_beamskip: bool = param(
+        False,
+        "whether beams that most particles contradict, as at people, are not used "
+        "while the robot is localized",
+    )
+    beam_skip_distance: float = param(
+        0.5,
+        "a particle contradicts a beam that ends farther from the map's obstacles",
+        above=0.0,
+        at_most=100.0,
+    )
+    beam_skip_threshold: float = param(
+        0.3,
+        "a beam is skipped if at most this share of the particles agrees with it",
+        at_least=0.0,
+        at_most=1.0,
+    )
+    beam_skip_error_threshold: float = param(
+        0.9,
+        "all beams are used if at least this share of them would be skipped: the pose "
+        "is wrong",
+        above=0.0,
+        at_most=1.0,
     )
     independent_beams: float = param(
         15.0,
@@ -125,6 +167,15 @@ class AmclParams(Params):
         0.001, "decay of the long-term mean; 0: no recovery", at_least=0.0, below=1.0
     )
 
+    save_pose_rate: float = param(
+        0.5,
+        "no effect: the pose is not stored, as in Nav2 without a file",
+        at_least=0.0,
+    )
+    freespace_downsampling: bool = param(
+        False, "no effect: the search of the map always has a coarse spacing"
+    )
+
     lost_match: float = param(
         0.35,
         "the robot is lost when less than this share of the beams ends at obstacles of "
@@ -144,6 +195,11 @@ class AmclParams(Params):
     lost_time_s: float = param(
         1.0, "how long that must last", at_least=0.0, at_most=60.0
     )
+
+    @property
+    def used_seed(self) -> int:
+        """Seed of the particles, under either name."""
+        return self.seed if self.random_seed < 0 else self.random_seed
 
     def check(self) -> None:
         if self.min_particles > self.max_particles:

@@ -101,8 +101,13 @@ class ParticleFilter:
         """Move the particles by the odometry's motion, base before to base after."""
         self._move(self.particles, motion, self._alphas, self._rng)
 
-    def update(self, points: Points) -> None:
-        """Weight by a scan's points (M, 2), base frame; resample when due."""
+    def update(self, points: Points, *, may_skip: bool = False) -> None:
+        """Weight by a scan's points (M, 2), base frame; resample when due.
+
+        ``may_skip``: whether beams that most particles contradict may be skipped.
+        """
+        if self.params.do_beamskip and may_skip:
+            points = self._agreed(points)
         if not len(points):
             return
         scores = self._field.scores(self.particles, points)
@@ -150,6 +155,15 @@ class ParticleFilter:
         noise = self._rng.normal(size=(count, 3)) * _SEED_STDDEV
         self.particles = found.poses[chosen] + noise
         self.weights = np.full(count, 1.0 / count)
+
+    def _agreed(self, points: Points) -> Points:
+        """Return the points with which enough particles agree; else all."""
+        params = self.params
+        near = self._field.agreement(self.particles, points, params.beam_skip_distance)
+        kept = near > params.beam_skip_threshold
+        skipped = len(points) - np.count_nonzero(kept)
+        is_wrong = skipped >= params.beam_skip_error_threshold * len(points)
+        return points if is_wrong else points[kept]
 
     def _forget_means(self) -> None:
         self._slow = self._fast = 0.0

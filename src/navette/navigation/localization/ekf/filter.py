@@ -19,6 +19,8 @@ from navette.navigation.localization.ekf.measurement import (
 )
 from navette.navigation.localization.ekf.state import (
     SIZE,
+    VX,
+    VYAW,
     YAW,
     Array,
     X,
@@ -78,6 +80,8 @@ class PlanarEkf:
         initial_covariance: (8, 8) before the first measurement.
         initial_state: (8,) before the first measurement; default 0.
         known: entries of it that count as measured, with the initial covariance.
+        scales_noise: multiply the process noise of the pose by the squared norm of the
+            velocity (robot_localization's ``dynamic_process_noise_covariance``).
 
     Attributes:
         squared_distance: normalised innovation squared of the last measurement; 0 for
@@ -90,7 +94,10 @@ class PlanarEkf:
         initial_covariance: Array,
         initial_state: Array | None = None,
         known: frozenset[int] = frozenset(),
+        *,
+        scales_noise: bool = False,
     ) -> None:
+        self.scales_noise = scales_noise
         self.known = known
         self.process_noise = process_noise
         self.initial_covariance = initial_covariance
@@ -193,6 +200,22 @@ class PlanarEkf:
         covariance[rows, rows] = _UNKNOWN
         return covariance
 
+    def _noise(self, state: Array, dt: float) -> Array:
+        """Return the noise of the motion during ``dt``, (8, 8).
+
+        The integral ∫ F(τ) Q F(τ)ᵀ dτ by Simpson's rule (exact for velocities:
+        Bar-Shalom, Li, Kirubarajan 2001, section 6.2). The noise of a velocity
+        correlates with that of the pose, so that the next measured velocity also
+        corrects the pose of this step; otherwise a turn would be integrated late.
+        """
+        Q = self.process_noise
+        if self.scales_noise:
+            Q = Q.copy()
+            Q[: YAW + 1, : YAW + 1] *= float(np.sum(np.square(state[VX : VYAW + 1])))
+        half, whole = predicted_jacobian(state, dt / 2), predicted_jacobian(state, dt)
+        noise: Array = dt / 6 * (Q + 4 * half @ Q @ half.T + whole @ Q @ whole.T)
+        return noise
+
     def _predicted_to(self, stamp_ns: int) -> FilterSnapshot:
         before = self.snapshot
         if before.stamp_ns is None:
@@ -203,7 +226,7 @@ class PlanarEkf:
         if dt <= 0.0:
             return before
         F = predicted_jacobian(before.state, dt)
-        covariance = F @ before.covariance @ F.T + dt * self.process_noise
+        covariance = F @ before.covariance @ F.T + self._noise(before.state, dt)
         return FilterSnapshot(
             stamp_ns,
             predicted(before.state, dt),

@@ -168,7 +168,11 @@ class EkfNode(StageNode):
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Continue from a pose of a person or program."""
-        frame_id = msg.header.frame_id or self.params.world_frame
+        params = self.params
+        frame_id = msg.header.frame_id or params.world_frame
+        is_of_map = frame_id == params.map_frame != params.world_frame
+        if is_of_map and not params.publish_status:
+            return  # for the node that publishes map → odom and the status
         try:
             world_T_frame = self.in_world(frame_id).to_pose2()
         except TransformError as error:
@@ -236,7 +240,13 @@ class EkfNode(StageNode):
         )
         known = frozenset({X, Y, YAW}) if params.initial_pose_is_known else frozenset()
         self._filter = OrderedEkf(
-            PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR], known),
+            PlanarEkf(
+                noise,
+                initial,
+                np.array(params.initial_state)[PLANAR],
+                known,
+                scales_noise=params.dynamic_process_noise_covariance,
+            ),
             round(params.history_length_s * 1e9),
             round(params.max_gap_s * 1e9),
         )

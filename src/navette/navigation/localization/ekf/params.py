@@ -105,6 +105,11 @@ class EkfParams(Params):
         "covariance added per second: 15 variances or 15 × 15, for "
         + " ".join(SPATIAL),
     )
+    dynamic_process_noise_covariance: bool = param(
+        False,
+        "whether the process noise of x, y and yaw is multiplied by the squared norm "
+        "of the velocity: a robot at rest does not become less certain",
+    )
     initial_estimate_covariance: tuple[float, ...] = param(
         (1e-9,) * len(SPATIAL),
         "covariance before the first measurement: 15 variances or 15 × 15",

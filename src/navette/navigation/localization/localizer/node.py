@@ -32,6 +32,7 @@ class LocalizerNode(StageNode):
             "pose and its covariance",
             rate_hz=10.0,
             callback="on_odometry",
+            most_hz=20.0,
         ),
         Input.of(
             topics.INITIAL_POSE,

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.conditions import ConditionalElement, condition_of
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.event import ExecutionComplete
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
@@ -30,6 +31,9 @@ def reads_arguments(action: type) -> Callable[[_ReaderT], _ReaderT]:
 
 class Action(LaunchDescriptionEntity):
     """Entity that is executed when it is visited and its condition holds."""
+
+    #: Whether the action calls :meth:`complete` itself, after :meth:`execute`.
+    completes_later = False
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         if condition is not None and not isinstance(condition, Condition):
@@ -78,10 +82,26 @@ class Action(LaunchDescriptionEntity):
         return [(f"if {self.condition.describe()}", inside)]
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        if self.condition is None or self.condition.evaluate(context):
-            return self.execute(context)
-        return None
+        if self.condition is not None and not self.condition.evaluate(context):
+            return None
+        found = self.execute(context)
+        if not self.completes_later:
+            self.complete(context)
+        return found
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Do the work; return the entities to visit next. The default does nothing."""
         return None
+
+    def complete(self, context: LaunchContext) -> None:
+        """Emit the event of the action's completion, after its future if it has one."""
+        future = self.get_asyncio_future()
+        if future is None or future.done():
+            self._emit_completion(context)
+        else:
+            future.add_done_callback(lambda _: self._emit_completion(context))
+
+    def _emit_completion(self, context: LaunchContext) -> None:
+        event = ExecutionComplete(action=self)
+        if any(handler.matches(event) for handler in context.event_handlers):
+            context.emit_event_sync(event)

@@ -9,7 +9,7 @@ from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.running import LaunchCommand
+from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
@@ -17,6 +17,9 @@ from navette.ros2.packages.launch.substitution import (
 )
 
 __all__ = ["Executable"]
+
+_INTERPRETER = re.compile(r"python[\d.]*")
+_RCLPY = re.compile(rb"^\s*(?:import|from)\s+rclpy\b", re.MULTILINE)
 
 SomeVariables = Mapping[Any, Any]
 
@@ -116,15 +119,35 @@ class Executable:
         """Return the prepared command."""
         if self.final_cwd is not None and not Path(self.final_cwd).is_dir():
             raise InvalidLaunchValueError(f"cwd {self.final_cwd!r}: no such folder")
+        words = self._words
+        script = None if shell else _ros_script(words, self.final_cwd)
+        if script is not None:
+            words = words[1:]
+        needs_process = self._prefix or self.final_cwd or self.final_env is not None
         return LaunchCommand(
             label=self.final_name or "",
-            argv=tuple(self._words),
+            argv=tuple(words),
+            program=script,
+            own_process=script is not None and bool(needs_process),
             prefix=tuple(self._prefix),
             cwd=self.final_cwd,
             env=self.final_env,
             shell=shell,
             tty=tty,
         )
+
+
+def _ros_script(words: list[str], cwd: str | None) -> PythonProgram | None:
+    """Return the program of ``python FILE.py …`` if the file imports rclpy.
+
+    ROS 2's module names exist in programs that Navette starts, not in a plain Python.
+    """
+    if len(words) < 2 or not _INTERPRETER.fullmatch(Path(words[0]).name):
+        return None
+    file = Path(cwd or "", words[1])
+    if file.suffix != ".py" or not file.is_file():
+        return None
+    return PythonProgram(file=file) if _RCLPY.search(file.read_bytes()) else None
 
 
 def _variables(given: SomeVariables | None) -> list[tuple[Parts, Parts]] | None:

@@ -31,6 +31,8 @@ class ProcessAction(Protocol):
 
     def keep_output(self, stream: str, data: bytes) -> None: ...
 
+    def complete(self, context: LaunchContext) -> None: ...
+
     def make_output(self, context: LaunchContext, label: str) -> LabelledOutput: ...
 
 
@@ -118,5 +120,6 @@ class LaunchedProcess(ManagedProcess):
         """Keep the launch running until the process has ended for good."""
         if self.is_alive or self.state is ProcessState.RESTARTING:
             self._context.busy.add(self)
-        else:
+        elif self in self._context.busy:
             self._context.busy.discard(self)
+            self._action.complete(self._context)

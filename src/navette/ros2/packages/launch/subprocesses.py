@@ -3,6 +3,7 @@
 import sys
 
 from navette.ros2.packages.launch.errors import LaunchError
+from navette.ros2.packages.launch.ros2_command import with_ros2
 from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.supervisor import (
     ChildProcess,
@@ -25,7 +26,8 @@ class SubprocessRunner:
         if command.program is not None:
             program = program_argv(command.program)
             argv = [*command.prefix, *program, *command.argv[1:]]
-        options = StartOptions(cwd=command.cwd, env=command.env, shell=command.shell)
+        env = with_ros2(command.env)
+        options = StartOptions(cwd=command.cwd, env=env, shell=command.shell)
         try:
             return self.manager.start(argv, options)
         except ProcessError as error:

@@ -30,9 +30,8 @@ class LaunchPlugin:
     @pytest.hookimpl(tryfirst=True)
     def pytest_pycollect_makeitem(self, collector: Any, name: str, obj: Any) -> Any:
         # pytest itself refuses tests with `yield`.
-        yields = inspect.isgeneratorfunction(obj) or inspect.isasyncgenfunction(obj)
         marks = [mark.name for mark in getattr(obj, "pytestmark", ())]
-        if yields and "launch" in marks and collector.istestfunction(obj, name):
+        if _yields(obj) and "launch" in marks and collector.istestfunction(obj, name):
             return list(collector._genfunctions(name, obj))
         return None
 
@@ -48,6 +47,12 @@ class LaunchPlugin:
             return None
         launch = _running(pyfuncitem._request)
         if marker.kwargs.get("shutdown") or _options(marker)["shutdown"]:
+            if _yields(pyfuncitem.obj):
+                pytest.fail(
+                    "a generator or async generator is not a test of a launch with "
+                    "shutdown=True: what follows its yield runs after the shutdown",
+                    pytrace=False,
+                )
             launch.shut_down()
         names = pyfuncitem._fixtureinfo.argnames
         arguments = {name: pyfuncitem.funcargs[name] for name in names}
@@ -63,6 +68,10 @@ class LaunchPlugin:
     def launch_context(self, request: Any) -> Any:
         """The context of the launch beside the test."""
         return _running(request).service.context
+
+
+def _yields(function: Any) -> bool:
+    return inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function)
 
 
 def _marker(item: Any) -> Any:

@@ -54,13 +54,15 @@ def assertExitCodes(  # noqa: N802 - ROS 2's name
     """
     for code in allowable_exit_codes:
         assert isinstance(code, int), f"exit code {code!r}: expected an integer"
-    found = resolveProcesses(
-        proc_info,
-        process=process,
-        cmd_args=cmd_args,
-        strict_proc_matching=strict_proc_matching,
-    )
     by_action = {event.action: event for event in proc_info}
+    found = list(by_action)
+    if process is not None:
+        found = resolveProcesses(
+            proc_info,
+            process=process,
+            cmd_args=cmd_args,
+            strict_proc_matching=strict_proc_matching,
+        )
     for event in (by_action[action] for action in found):
         assert isinstance(event, ProcessExited), f"{event.process_name} still runs"
         assert event.returncode in allowable_exit_codes, (
@@ -158,9 +160,10 @@ class SequentialTextChecker:
         return True
 
     def get_nearby_lines(self) -> str:
-        """Return the line that was matched last, and two lines before and after it."""
+        """Return the current line, and two lines before and after it."""
         lines = self._output.splitlines()
-        at = self._output.count("\n", 0, max(self._position - 1, 0))
+        # Behind a whole line, the next one is the current line.
+        at = self._output.count("\n", 0, self._position + 1)
         return "\n".join(lines[max(at - 2, 0) : at + 3])
 
 

@@ -1,7 +1,7 @@
 """Decorators of test descriptions and test classes."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial, wraps
+from functools import partial, update_wrapper, wraps
 from typing import Any, TypeVar
 
 _ClassT = TypeVar("_ClassT", bound=type)
@@ -37,15 +37,16 @@ def parametrize(
         argvalues: a value for each call; a tuple for several names.
     """
     names = argnames.split(",") if isinstance(argnames, str) else list(argnames)
-    names = [name.strip() for name in names]
+    names = [name.strip() for name in names if name.strip()]
+    calls_values = [each if isinstance(each, tuple) else (each,) for each in argvalues]
 
     def mark(function: Any) -> Any:
         @wraps(function)
         def calls() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
-            for values in argvalues:
-                given = values if isinstance(values, tuple) else (values,)
-                arguments = dict(zip(names, given, strict=True))
-                yield partial(function, **arguments), arguments
+            for values in calls_values:
+                arguments = dict(zip(names, values, strict=True))
+                call = update_wrapper(partial(function, **arguments), function)
+                yield call, arguments
 
         calls.__parametrized__ = True  # type: ignore[attr-defined] # as in ROS 2
         return calls

@@ -16,6 +16,12 @@ DEFAULT_READY_TIMEOUT_S = 15.0
 _BOUND_METHODS = ("setUp", "tearDown")
 
 
+class _Suite(unittest.TestSuite):
+    """Suite that keeps its cases after they have run: reports list them."""
+
+    _cleanup = False
+
+
 class TestRun:
     """One launch, the tests beside it and the tests after it.
 
@@ -38,43 +44,94 @@ class TestRun:
     ) -> None:
         self.name = name
         self.param_args = dict(param_args)
-        self.pre_shutdown_tests = unittest.TestSuite(pre_shutdown_tests)
-        self.post_shutdown_tests = unittest.TestSuite(post_shutdown_tests)
+        self.pre_shutdown_tests = _Suite(pre_shutdown_tests)
+        self.post_shutdown_tests = _Suite(post_shutdown_tests)
         self._describe = test_description_function
-        base = inspect.unwrap(
-            getattr(test_description_function, "func", self._describe)
-        )
-        timeout = getattr(base, "__ready_to_test_action_timeout__", None)
+        timeout = getattr(self._describe, "__ready_to_test_action_timeout__", None)
         self.timeout = DEFAULT_READY_TIMEOUT_S if timeout is None else float(timeout)
-        self.markers: dict[str, Any] = getattr(base, "__markers__", {})
+        self.markers: dict[str, Any] = getattr(self._describe, "__markers__", {})
+        self._name_cases()
+
+    def _name_cases(self) -> None:
+        """Append the parameters to the names of the cases."""
+        for case in self.all_cases() if self.param_args else ():
+            name = f"{case._testMethodName}{self._format_params()}"
+            setattr(case, name, getattr(case, case._testMethodName))
+            case._testMethodName = name
+
+    def _format_params(self) -> str:
+        words = map(str, self.param_args.values())
+        return f"[{', '.join(words)}]" if self.param_args else ""
 
     def __str__(self) -> str:
-        words = [f"{name}={value}" for name, value in self.param_args.items()]
-        return f"{self.name}[{', '.join(words)}]" if words else self.name
+        return self.name + self._format_params()
 
-    def describe(
-        self, on_ready: Callable[[], Any]
+    def check_signature(self) -> None:
+        """Check that the description's function has the parameters, and no others.
+
+        Raises:
+            TypeError: names the argument.
+        """
+        function = inspect.unwrap(self._describe)
+        taken = inspect.signature(function).parameters
+        for name in self.param_args:
+            if name not in taken:
+                raise TypeError(
+                    f"Could not find an argument {name!r} of {FUNCTION}() for "
+                    f"parametrize; it has {', '.join(taken) or 'none'}"
+                )
+        for name, parameter in taken.items():
+            if name in self.param_args or name == "ready_fn":
+                continue
+            if parameter.default is parameter.empty:
+                raise TypeError(
+                    f"{FUNCTION}() has unexpected extra argument {name!r}; "
+                    "@launch_testing.parametrize() sets arguments"
+                )
+
+    def normalized_test_description(
+        self, *, ready_fn: Callable[[], Any]
     ) -> tuple[LaunchDescription, dict[str, Any]]:
         """Return a new description and the objects for its tests.
 
         Args:
-            on_ready: called by the description's ReadyToTest, or passed as the argument
-                ``ready_fn`` where the function has one.
+            ready_fn: called by the description's ReadyToTest, or passed to the function
+                where it has this argument.
 
         Raises:
             ValueError: the description has not exactly one ReadyToTest.
         """
         takes_ready = "ready_fn" in inspect.signature(self._describe).parameters
-        result = self._describe(**({"ready_fn": on_ready} if takes_ready else {}))
+        result = self._describe(**({"ready_fn": ready_fn} if takes_ready else {}))
         description, context = result if isinstance(result, tuple) else (result, {})
         if not takes_ready:
-            find_ready_action(description)._add_callback(on_ready)
+            find_ready_action(description)._add_callback(ready_fn)
         return description, dict(context)
 
-    def bind(self, suite: unittest.TestSuite, values: Mapping[str, Any]) -> None:
-        """Pass values to the arguments of that name of the tests' methods."""
-        given = {**values, **self.param_args}
-        for test in iterate_tests(suite):
+    def get_launch_description(self) -> LaunchDescription:
+        """Return a description to look into, not to launch."""
+        return self.normalized_test_description(ready_fn=lambda: None)[0]
+
+    def all_cases(self) -> Iterator[Any]:
+        """Yield the test cases beside the launch, then those after it."""
+        yield from iterate_tests(self.pre_shutdown_tests)
+        yield from iterate_tests(self.post_shutdown_tests)
+
+    def bind(
+        self,
+        tests: Iterable[Any],
+        injected_attributes: Mapping[str, Any],
+        injected_args: Mapping[str, Any],
+    ) -> None:
+        """Give values to tests.
+
+        Args:
+            injected_attributes: attributes of the test cases (``self.proc_info``).
+            injected_args: arguments of the tests' methods, by name.
+        """
+        given = {**injected_args, **self.param_args}
+        for test in iterate_tests(tests):
+            vars(test).update(injected_attributes)
             for name in (*_BOUND_METHODS, test._testMethodName):
                 _bind(test, name, given)
             for name in ("setUpClass", "tearDownClass"):
@@ -90,8 +147,8 @@ def find_ready_action(description: LaunchDescription) -> ReadyToTest:
     found = [each for each in walk(description) if isinstance(each, ReadyToTest)]
     if len(found) != 1:
         raise ValueError(
-            "a test description needs one launch_testing.actions.ReadyToTest(), this "
-            f"one has {len(found)}"
+            f"{FUNCTION}() must return a LaunchDescription containing a ReadyToTest "
+            f"action, launch_testing.actions.ReadyToTest(); this one has {len(found)}"
         )
     return found[0]
 
@@ -134,6 +191,7 @@ def LoadTestsFromPythonModule(  # noqa: N802 - ROS 2's name
 
 def _suite(module: ModuleType, *, after_shutdown: bool) -> unittest.TestSuite:
     loader = unittest.TestLoader()
+    loader.suiteClass = _Suite
     classes = [
         each
         for each in vars(module).values()
@@ -144,7 +202,11 @@ def _suite(module: ModuleType, *, after_shutdown: bool) -> unittest.TestSuite:
     ]
     # A class of its own for each run: what setUpClass gets belongs to one run.
     own = [
-        type(each.__name__, (each,), {"__qualname__": each.__qualname__})
+        type(
+            each.__name__,
+            (each,),
+            {"__module__": each.__module__, "__qualname__": each.__qualname__},
+        )
         for each in classes
     ]
-    return unittest.TestSuite(map(loader.loadTestsFromTestCase, own))
+    return _Suite(map(loader.loadTestsFromTestCase, own))

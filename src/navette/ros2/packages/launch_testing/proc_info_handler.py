@@ -94,6 +94,7 @@ class ActiveProcInfoHandler(ProcInfoHandler):
             if not self._changed.wait_for(predicate, timeout):
                 shown = getattr(process, "name", None) or process
                 raise AssertionError(
-                    f"process {shown!r} did not {what} within {timeout} s; processes: "
+                    f"Timed out waiting for process {shown!r} to {what} within "
+                    f"{timeout} s; processes: "
                     f"{', '.join(self.process_names()) or 'none'}"
                 )

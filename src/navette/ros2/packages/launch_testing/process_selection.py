@@ -91,7 +91,8 @@ def _described(action: Any) -> str:
     details = action.process_details
     if details is not None:
         return f"{details['name']}: {' '.join(details['cmd'])}"
-    parts = [part for word in action.cmd for part in word]
+    words = action.process_description.cmd
+    parts = [part for word in words for part in word]
     if not all(isinstance(part, TextSubstitution) for part in parts):
         return "Unknown - Process not launched yet"
-    return " ".join(word.perform(LaunchContext()) for word in action.cmd)
+    return " ".join(word.perform(LaunchContext()) for word in words)

@@ -14,6 +14,7 @@ from navette.ros2.packages.launch_testing.loader import (
     LoadTestsFromPythonModule,
     TestRun,
 )
+from navette.ros2.packages.launch_testing.test_result import FailResult
 from navette.ros2.packages.launch_testing.test_runner import LaunchTestRunner
 
 
@@ -36,6 +37,8 @@ class LaunchTestItem(pytest.Item):
         arguments = self.config.getoption("--launch-args")
         runner = LaunchTestRunner([self._test_run], arguments)
         result = next(iter(runner.run().values()))
+        if isinstance(result, FailResult):
+            raise LaunchTestError(result.message)
         problems = [*result.errors, *result.failures]
         problems += [
             (test, "unexpected success") for test in result.unexpectedSuccesses

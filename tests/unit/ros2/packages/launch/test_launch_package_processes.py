@@ -252,3 +252,32 @@ def test_invalid_command_lines_are_refused() -> None:
         ExecuteProcess(cmd="ls -l")
     with pytest.raises(InvalidLaunchValueError, match="empty"):
         ExecuteProcess(cmd=[])
+
+
+def test_the_completion_of_actions(
+    launch: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A process is complete at its exit, a timer when it fires, others at once."""
+    launch.runner.behaviour = lambda p: p.listener.exited(0)
+    program = ExecuteProcess(cmd=["program"])
+    timer = TimerAction(period=1.0, actions=[LogInfo(msg="inside")])
+    note = LogInfo(msg="note")
+    handlers = [
+        RegisterEventHandler(
+            OnExecutionComplete(
+                target_action=action, on_completion=[LogInfo(msg=f"{name} complete")]
+            )
+        )
+        for name, action in (("program", program), ("timer", timer), ("note", note))
+    ]
+    exited = OnProcessExit(target_action=program, on_exit=[LogInfo(msg="exit")])
+    launch.run(*handlers, RegisterEventHandler(exited), timer, note, program)
+    lines = user_lines(caplog)
+    assert sorted(lines) == sorted(
+        [
+            *("note", "note complete", "exit"),
+            *("program complete", "inside", "timer complete"),
+        ]
+    )
+    assert lines.index("exit") < lines.index("program complete")
+    assert lines.index("program complete") < lines.index("timer complete")

@@ -1,15 +1,25 @@
 """launch_testing and launch_pytest: tests beside the processes of a launch."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from xml.etree import ElementTree
 
 import pytest
 
 from navette.ros2.names.hook import install, uninstall
+from navette.ros2.packages.launch import LaunchDescription, LaunchService
+from navette.ros2.packages.launch.actions import ExecuteProcess
 from navette.ros2.packages.launch_testing.asserts import SequentialTextChecker
+from navette.ros2.packages.launch_testing.junitxml import unittestResultsToXml
 from navette.ros2.packages.launch_testing.launch_test import main
+from navette.ros2.packages.launch_testing.legacy import LaunchTestService
+from navette.ros2.packages.launch_testing.legacy.output import (
+    create_output_lines_test,
+    create_output_regex_test,
+)
 from navette.ros2.packages.launch_testing.loader import LoadTestsFromPythonModule
 from navette.ros2.packages.launch_testing.ready_aggregator import ReadyAggregator
 from navette.ros2.packages.launch_testing.test_runner import LaunchTestRunner
@@ -18,7 +28,8 @@ from navette.ros2.packages.launch_testing.tools import expect_output
 
 DESCRIPTION = """
 import sys, unittest
-import launch, launch_testing, launch_testing.actions, launch_testing.asserts
+import launch, launch.substitutions, launch_testing, launch_testing.actions
+import launch_testing.asserts
 import launch_testing.util
 from launch_testing.event_handlers.stdout_ready_listener import StdoutReadyListener
 
@@ -33,12 +44,14 @@ TALKER = (
     + """
 @launch_testing.parametrize('word', ['a', 'b'])
 def generate_test_description(word):
-    dut = process(word)
+    dut = process(word, launch.substitutions.LaunchConfiguration('speed'))
     ready = StdoutReadyListener(
         target_action=dut, ready_txt='ready',
         actions=[launch_testing.actions.ReadyToTest()],
     )
+    speed = launch.actions.DeclareLaunchArgument('speed', default_value='2')
     return launch.LaunchDescription([
+        speed,
         launch.actions.RegisterEventHandler(ready),
         launch_testing.util.KeepAliveProc(), dut,
     ]), {'dut': dut}
@@ -55,7 +68,7 @@ class TestBeside(unittest.TestCase):
         proc_output.assertWaitFor('oh', timeout=20)
         assert not proc_output.waitFor('never', timeout=0.01)
         proc_info.assertWaitForShutdown(process='dut-1', timeout=20)
-        assert word in dut.process_details['cmd']
+        assert dut.process_details['cmd'][-2:] == [word, '1']
 
     def test_a_further_process(self, launch_service, proc_info, proc_output):
         own = process()
@@ -95,7 +108,7 @@ def _module(text: str) -> ModuleType:
 
 def test_tests_beside_and_after_each_launch() -> None:
     runs = LoadTestsFromPythonModule(_module(TALKER), name="talker")
-    assert list(map(str, runs)) == ["talker[word=a]", "talker[word=b]"]
+    assert list(map(str, runs)) == ["talker[a]", "talker[b]"]
     results = LaunchTestRunner(runs, ["speed:=1"]).run()
     for result in results.values():
         assert result.errors + result.failures == []
@@ -131,15 +144,121 @@ def test_a_process_that_ends_early_and_its_code_fail() -> None:
 def test_a_description_without_ready_is_refused() -> None:
     text = DESCRIPTION + "generate_test_description = launch.LaunchDescription\n"
     runs = LoadTestsFromPythonModule(_module(text))
-    with pytest.raises(ValueError, match=r"ReadyToTest\(\), this one has 0"):
+    LaunchTestRunner(runs).validate()  # calls nothing
+    with pytest.raises(ValueError, match=r"ReadyToTest\(\); this one has 0"):
+        LaunchTestRunner(runs).run()
+
+
+@pytest.mark.parametrize(
+    ("decorator", "arguments", "problem"),
+    [
+        ("", "extra", "unexpected extra argument 'extra'"),
+        ("@launch_testing.parametrize('word', ['a'])", "", "Could not find .* 'word'"),
+    ],
+)
+def test_wrong_arguments_of_a_description_are_named(
+    decorator: str, arguments: str, problem: str
+) -> None:
+    text = (
+        f"{DESCRIPTION}\n{decorator}\ndef generate_test_description({arguments}): pass"
+    )
+    runs = LoadTestsFromPythonModule(_module(text))
+    with pytest.raises(TypeError, match=problem):
         LaunchTestRunner(runs).validate()
+
+
+SKIPPED = """
+import unittest, launch_testing
+
+@unittest.skip('no robot')
+def generate_test_description(): ...
+
+class TestBeside(unittest.TestCase):
+    def test_one(self): ...
+    def test_two(self): ...
+"""
+
+
+def test_a_skipped_description_skips_its_tests() -> None:
+    runs = LoadTestsFromPythonModule(_module(SKIPPED), name="skipped")
+    results = LaunchTestRunner(runs).run()
+    (result,) = results.values()
+    assert result.wasSuccessful()
+    assert [reason for _, reason in result.skipped] == ["no robot"] * 2
+    suite = unittestResultsToXml(test_results=results).getroot()[0]
+    assert suite.attrib["skipped"] == suite.attrib["tests"] == "2"
+    assert [case.attrib["name"] for case in suite] == ["test_one", "test_two"]
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "talker_launch_test.py"
     file.write_text(ENDS_EARLY)
-    assert main([str(file)]) == 1
-    assert "talker_launch_test: 2 tests, FAILED" in capsys.readouterr().out
+    report = tmp_path / "report.xml"
+    arguments = ["--package-name", "talker", "--junit-xml", str(report)]
+    assert main([str(file), *arguments]) == 1
+    assert "talker.talker_launch_test.launch_tests: " in capsys.readouterr().out
+    root = ElementTree.parse(report).getroot()
+    assert root.attrib["name"] == "talker.talker_launch_test"
+    assert int(root.attrib["failures"]) > 0
+
+
+def test_the_command_lists_arguments(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "args_launch_test.py"
+    file.write_text(
+        f"""{DESCRIPTION}
+def generate_test_description():
+    speed = launch.actions.DeclareLaunchArgument(
+        'speed', default_value='1', description='of the robot')
+    return launch.LaunchDescription([speed, launch_testing.actions.ReadyToTest()])
+"""
+    )
+    assert main([str(file), "--show-args"]) == 0
+    shown = capsys.readouterr().out
+    assert "'speed':\n        of the robot\n" in shown
+
+
+def test_python_files_that_import_rclpy_get_the_names_of_ros(tmp_path: Path) -> None:
+    talker = tmp_path / "talker.py"
+    talker.write_text("import sys\nimport rclpy\nprint(rclpy.__name__, sys.argv[1])\n")
+    environment = {"NAVETTE_TRANSPORT": "inprocess"}
+    action = ExecuteProcess(
+        cmd=[sys.executable, str(talker), "a"],
+        additional_env=environment,
+        cached_output=True,
+    )
+    launch = LaunchService()
+    launch.include_launch_description(LaunchDescription([action]))
+    assert launch.run() == 0
+    assert action.get_stdout() == "rclpy a\n"
+    assert action.process_details is not None
+    assert action.process_details["name"].startswith("python")
+
+
+@pytest.mark.parametrize(("code", "expected"), [(0, 0), (3, 3)])
+def test_a_process_decides_as_a_legacy_test(code: int, expected: int) -> None:
+    program = f"print('ready'); print('10 done'); raise SystemExit({code})"
+    action = ExecuteProcess(cmd=[sys.executable, "-u", "-c", program])
+    description, service = LaunchDescription(), LaunchTestService()
+    service.add_test_action(description, action)
+    lines = create_output_lines_test([b"ready", b"done"])
+    service.add_output_test(description, action, lines)
+    pattern = create_output_regex_test([re.compile(rb"\d+ done")])
+    service.add_output_test(description, action, pattern, test_suffix="pattern")
+    launch = LaunchService()
+    launch.include_launch_description(description)
+    assert service.run(launch) == expected
+
+
+def test_missing_output_fails_a_legacy_test() -> None:
+    action = ExecuteProcess(cmd=[sys.executable, "-u", "-c", "print('ready')"])
+    description, service = LaunchDescription(), LaunchTestService()
+    service.add_fixture_action(description, action)
+    service.add_output_test(description, action, create_output_lines_test([b"done"]))
+    launch = LaunchService()
+    launch.include_launch_description(description)
+    assert service.run(launch) == 1
 
 
 PYTEST = """
@@ -176,6 +295,10 @@ def test_yields_twice():
     yield
     yield
 
+@pytest.mark.launch(fixture=description, shutdown=True)
+def test_yields_after_the_shutdown():
+    yield
+
 @launch_pytest.fixture
 def wrong():
     return object()
@@ -198,7 +321,7 @@ def test_launch_pytest_and_launch_test_files(tmp_path: Path) -> None:
         check=False,
         cwd=tmp_path,
     )
-    assert "1 failed, 4 passed, 1 error" in done.stdout, done.stdout + done.stderr
+    assert "2 failed, 4 passed, 1 error" in done.stdout, done.stdout + done.stderr
     assert "must stop iteration after yielding once" in done.stdout
     assert "must be either a launch description" in done.stdout
 

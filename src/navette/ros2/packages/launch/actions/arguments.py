@@ -79,6 +79,20 @@ class DeclareLaunchArgument(Action):
             )
 
 
+def describe_arguments(declared: Sequence[Any]) -> str:
+    """Format declared arguments as ``ros2 launch --show-args`` does."""
+    lines = ["Arguments (pass arguments as '<name>:=<value>'):", ""]
+    if not declared:
+        lines += ["  No arguments.", ""]
+    for argument in declared:
+        lines.append(f"    '{argument.name}':")
+        lines.append(f"        {argument.description}")
+        if argument.default_value is not None:
+            lines.append(f"        (default: {argument.describe_default()})")
+        lines.append("")
+    return "\n".join(lines)
+
+
 class SetLaunchConfiguration(Action):
     """Sets a configuration (``<let>``) in the present scope."""
 

@@ -59,6 +59,8 @@ class ExecuteLocal(Action):
         required: shut the launch down at the exit (as ``on_exit=Shutdown()`` does).
     """
 
+    completes_later = True  # with the last exit
+
     def __init__(
         self,
         *,
@@ -117,7 +119,7 @@ class ExecuteLocal(Action):
     def name(self) -> Any:
         """Label (``talker-1``); before the start the given name, or None."""
         if self._process is None:
-            return self.process_description.name
+            return self.process_description.final_name or self.process_description.name
         return self._process.label or None
 
     @property
@@ -150,9 +152,13 @@ class ExecuteLocal(Action):
         if self._process is not None:
             self._process.write(data)
 
+    def prepare(self, context: LaunchContext) -> None:
+        """Perform the substitutions of the command; the start does so, too."""
+        self.process_description.prepare(context, self)
+
     def make_command(self, context: LaunchContext) -> LaunchCommand:
         """Return the command with all substitutions performed."""
-        self.process_description.prepare(context, self)
+        self.prepare(context)
         return self.process_description.command(
             shell=self.shell, tty=perform_bool(context, self.emulate_tty)
         )

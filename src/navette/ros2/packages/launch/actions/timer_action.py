@@ -24,6 +24,8 @@ class TimerAction(Action):
         cancel_on_shutdown: they do not happen if the launch ends before.
     """
 
+    completes_later = True
+
     def __init__(
         self,
         *,
@@ -59,6 +61,7 @@ class TimerAction(Action):
             self._is_waiting = False
             context.busy.discard(self)
             context.visit_later([_Scoped(self.actions, scope, local)])
+            self.complete(context)
 
         self.schedule(context, seconds, fire)
         if perform_bool(context, self.cancel_on_shutdown):

@@ -1,8 +1,8 @@
 """ROS 2's ``launch.events``."""
 
+from navette.ros2.packages.launch.event import ExecutionComplete
 from navette.ros2.packages.launch.events import process
 from navette.ros2.packages.launch.events.execution import (
-    ExecutionComplete,
     IncludeLaunchDescription,
     Shutdown,
     TimerEvent,

@@ -7,15 +7,6 @@ from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 
 
-class ExecutionComplete(Event):
-    """An action is complete."""
-
-    name = "launch.events.ExecutionComplete"
-
-    def __init__(self, *, action: Action) -> None:
-        self.action = action
-
-
 class TimerEvent(Event):
     """The period of a timer is over."""
 

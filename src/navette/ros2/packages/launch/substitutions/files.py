@@ -14,6 +14,7 @@ from navette.ros2.packages.launch.errors import (
 )
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.ros2_command import with_ros2
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
@@ -72,7 +73,8 @@ class FindExecutable(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         name = self.name.perform(context)
-        found = shutil.which(name)
+        environment = with_ros2(None) if name == "ros2" else None
+        found = shutil.which(name, path=(environment or os.environ).get("PATH"))
         if found is None:
             raise SubstitutionFailure(
                 f"executable {name!r} is not on PATH ({os.environ.get('PATH', '')})"

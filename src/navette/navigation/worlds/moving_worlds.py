@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from navette.navigation.bench.dynabarn import walled_field
+from navette.navigation.worlds.dynabarn import placed, walled_field
 from navette.sim import Scene
 
 KIND = "dynabarn-like"
@@ -47,7 +47,7 @@ def moving_scene(seed: int) -> Scene:
     field = walled_field(f"{KIND}-{seed}")
     for _ in range(int(rng.integers(*difficulty.cylinders))):
         field.add_actor(_keyframes(rng, difficulty), _RADIUS_M, height=_HEIGHT_M)
-    return field.scene()
+    return placed(field.scene())
 
 
 def _keyframes(rng: np.random.Generator, difficulty: _Difficulty) -> list[Keyframe]:

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from navette.navigation.bench.shortest import (
+from navette.navigation.bench.suites import suite_trials
+from navette.navigation.worlds.shortest import (
     filled_outlines,
     grid_between,
     shortest_around,
 )
-from navette.navigation.bench.suites import suite_trials
 from navette.sim import load_world
 
 WALL = np.array([(-0.1, -2.0), (0.1, -2.0), (0.1, 2.0), (-0.1, 2.0)])

@@ -2,13 +2,13 @@
 
 import pytest
 
-from navette.navigation.costmap.scan_selection import ScanSelection
+from navette.runtime.stage.stamp_selection import StampSelection
 
 MS = 1_000_000
 
 
 def taken(rate_hz: float, stamps_ms: list[int]) -> list[int]:
-    selection = ScanSelection(rate_hz)
+    selection = StampSelection(rate_hz)
     return [stamp for stamp in stamps_ms if selection.takes(stamp * MS)]
 
 

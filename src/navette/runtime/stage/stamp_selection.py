@@ -1,14 +1,14 @@
-"""Selection of scans for costmaps, for sensors faster than the required rate."""
+"""Selection of messages by their stamps, for inputs faster than required."""
 
 
-class ScanSelection:
-    """Selects the last scan of each period: the newest one at the end of the period.
+class StampSelection:
+    """Selects the last message of each period: the newest one at the end of the period.
 
     Periods begin at multiples of their length. The next stamp is predicted from the
     interval between the last two.
 
     Args:
-        rate_hz: periods per second; 0 selects every scan.
+        rate_hz: periods per second; 0 selects every message.
     """
 
     def __init__(self, rate_hz: float) -> None:
@@ -16,7 +16,7 @@ class ScanSelection:
         self._last_ns: int | None = None
 
     def takes(self, stamp_ns: int) -> bool:
-        """Return whether to use the scan with this stamp; called for each."""
+        """Return whether to use the message with this stamp; called for each."""
         last_ns, self._last_ns = self._last_ns, stamp_ns
         if not self._period_ns or last_ns is None or stamp_ns <= last_ns:
             return True

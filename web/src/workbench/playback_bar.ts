@@ -1,68 +1,64 @@
-/** The bar under a recording that is played: play, step, seek, rate. */
+/** The bar below the scene while a recording is played: play, step, seek, rate. */
 
-import "./playback.css";
-import type { Dispose } from "../connection/connection";
+import "./playback_bar.css";
+import type { Connection } from "../connection/connection";
+import { clockText } from "../panels/format";
+import { takesSpace } from "../tools/teleop";
 import { h, setText } from "../ui/dom";
 import { every } from "../ui/frames";
 import { icon } from "../ui/icons";
-import { emptyState } from "./empty";
-import { clockText } from "./format";
-import { type PanelContext, type PanelInstance, registerPanel } from "./panel";
 
 const STEPS = 10_000;
 const SEEK_MS = 80;
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 const TEXTS = { playing: "Playing", paused: "Paused", buffering: "Loading", ended: "Ended" } as const;
 
-class PlaybackPanel implements PanelInstance {
-  readonly #play = h("button", { class: "main playback-play", onclick: () => this.#control({ play: this.context.connection.playback?.status !== "playing" }) });
+export class PlaybackBar {
+  readonly element: HTMLElement;
+  readonly #play = h("button", { class: "main playback-play", onclick: () => this.#toggle() });
   readonly #step = h("button", { class: "bare", title: "Next message", "aria-label": "Next message", onclick: () => this.#control({ step: true }) }, icon("step"));
   readonly #slider = h("input", { type: "range", min: 0, max: STEPS, value: 0, class: "playback-slider", "aria-label": "Position", oninput: () => this.#seekSoon() });
   readonly #text = h("output", { class: "number playback-text" });
   readonly #rate = h("select", { "aria-label": "Rate", onchange: () => this.#control({ speed: Number(this.#rate.value) }) });
   readonly #status = h("span", { class: "hint playback-status" });
-  readonly #bar: HTMLElement;
-  readonly #empty = emptyState("playback", "No recording", "navette bag play FILE --view opens a recording here.");
-  readonly #ends: Dispose[] = [];
   #timer: ReturnType<typeof setTimeout> | undefined;
   #heldUntilMs = 0;
 
-  constructor(
-    container: HTMLElement,
-    private readonly context: PanelContext,
-  ) {
-    this.#bar = h("div", { class: "playback-bar", role: "group", "aria-label": "Playback" }, this.#play, this.#step, this.#slider, this.#text, this.#rate, this.#status);
-    container.append(h("div", { class: "panel" }, h("div", { class: "body playback-body" }, this.#bar, this.#empty.element)));
+  constructor(private readonly connection: Connection) {
+    this.element = h("section", { class: "playback-bar", "aria-label": "Playback" }, this.#play, this.#step, this.#slider, this.#text, this.#rate, this.#status);
+    connection.on("playback", () => this.#show());
+    connection.on("status", () => this.#show());
+    every(10, () => this.#showPosition());
+    for (const type of ["keydown", "keyup"] as const) addEventListener(type, (event) => this.#onKey(event));
     this.#show();
   }
 
-  setVisible(isVisible: boolean): void {
-    for (const end of this.#ends.splice(0)) end();
-    if (!isVisible) return;
-    this.#ends.push(this.context.connection.on("playback", () => this.#show()), every(10, () => this.#showPosition()));
-    this.#show();
+  /** Space plays and pauses; a robot that drives takes it for Stop before. */
+  #onKey(event: KeyboardEvent): void {
+    const isTaken = event.defaultPrevented || takesSpace(event.target) || event.ctrlKey || event.metaKey || event.altKey;
+    if (event.key !== " " || isTaken || this.connection.playback === null) return;
+    event.preventDefault(); // presses no button
+    if (event.type === "keydown" && !event.repeat) this.#toggle();
   }
 
-  dispose = (): void => {
-    this.setVisible(false);
-    clearTimeout(this.#timer);
-  };
+  #toggle(): void {
+    this.#control({ play: this.connection.playback?.status !== "playing" });
+  }
 
   #control(request: { play?: boolean; seekNs?: bigint; speed?: number; step?: boolean }): void {
-    this.context.connection.controlPlayback(request);
+    this.connection.controlPlayback(request);
   }
 
   #show(): void {
-    const state = this.context.connection.playback;
-    this.#bar.hidden = state === null;
-    this.#empty.element.hidden = state !== null;
+    const state = this.connection.playback;
+    this.element.hidden = state === null;
     if (!state) return;
     const isPlaying = state.status === "playing";
     if (this.#play.dataset["playing"] !== String(isPlaying)) {
       this.#play.dataset["playing"] = String(isPlaying);
       this.#play.replaceChildren(icon(isPlaying ? "pause" : "play"));
-      this.#play.title = isPlaying ? "Pause" : "Play";
-      this.#play.setAttribute("aria-label", this.#play.title);
+      this.#play.title = `${isPlaying ? "Pause" : "Play"} (Space)`;
+      this.#play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
     }
     setText(this.#status, TEXTS[state.status]);
     const rates = RATES.includes(state.speed) ? RATES : [...RATES, state.speed].sort((a, b) => a - b);
@@ -74,7 +70,7 @@ class PlaybackPanel implements PanelInstance {
   }
 
   #showPosition(): void {
-    const { playback, nowNs } = this.context.connection;
+    const { playback, nowNs } = this.connection;
     // What the hand holds, and what the server has not reached yet, stays.
     if (!playback || this.#timer !== undefined || performance.now() < this.#heldUntilMs) return;
     const length = Number(playback.endNs - playback.beginNs);
@@ -84,7 +80,7 @@ class PlaybackPanel implements PanelInstance {
   }
 
   #write(): void {
-    const { playback } = this.context.connection;
+    const { playback } = this.connection;
     if (!playback) return;
     const length = Number(playback.endNs - playback.beginNs) / 1e9;
     const share = Number(this.#slider.value) / STEPS;
@@ -99,7 +95,7 @@ class PlaybackPanel implements PanelInstance {
     this.#heldUntilMs = performance.now() + 400;
     this.#timer ??= setTimeout(() => {
       this.#timer = undefined;
-      const { playback } = this.context.connection;
+      const { playback } = this.connection;
       if (!playback) return;
       const share = BigInt(this.#slider.value);
       this.#heldUntilMs = performance.now() + 400;
@@ -107,12 +103,3 @@ class PlaybackPanel implements PanelInstance {
     }, SEEK_MS);
   }
 }
-
-registerPanel({
-  id: "playback",
-  title: "Playback",
-  icon: "playback",
-  place: "below",
-  hint: "Play, pause, seek and step a recording.",
-  create: (container, context) => new PlaybackPanel(container, context),
-});

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import OMNI, Pose2
+from navette.geometry import ACKERMANN, OMNI, Pose2
 from navette.navigation.grids import GridSpec
 
 HEADINGS = 72
@@ -52,11 +52,13 @@ def goal_reach(
     *,
     drive: str,
     tolerance_m: float,
+    turning_radius_m: float = 0.0,
 ) -> Reach:
     """Return whether a body reaches a goal (m, map) within the tolerance.
 
     What is certain holds for every motion of the body; what is sure is a path on which
-    a drive moves along its heading and turns in place.
+    a drive moves along its heading and turns in place, or steers forward with a least
+    radius: a car does not back up into space that it has never measured.
     """
     radius = float(np.hypot(*body.T).max())
     ends = np.array([(start.x, start.y), goal])
@@ -73,7 +75,10 @@ def goal_reach(
     beside = world.disc((start.x, start.y), radius)
     roomy[:, beside] |= world.open_poses(_START_M)[:, beside]
     roomy[at] = True
-    reached = connected(roomy, at, sideways=drive == OMNI)
+    if drive == ACKERMANN:
+        reached = steered(roomy, world.spec, start, turning_radius_m)
+    else:
+        reached = connected(roomy, at, sideways=drive == OMNI)
     inner = world.disc(goal, max(0.5 * tolerance_m, size))
     return Reach.SURE if reached[:, inner].any() else Reach.UNSURE
 
@@ -172,6 +177,23 @@ def connected(opened: Open, start: tuple[int, int, int], *, sideways: bool) -> O
     return reached
 
 
+def steered(opened: Open, spec: GridSpec, start: Pose2, radius_m: float) -> Open:
+    """Return (HEADINGS, H, W) the poses that a car reaches forward from a start.
+
+    Each move is straight or an arc of the radius to the next heading. A pose keeps its
+    exact position; the first in each cell continues, as in hybrid A* (Dolgov et al.
+    2008).
+    """
+    reached = np.zeros_like(opened)
+    step = math.tau / HEADINGS
+    chord = 2 * radius_m * math.sin(step / 2)
+    moves = np.array([(chord, turn) for turn in (0, 1, -1)])
+    corner = (start.x - spec.origin.x, start.y - spec.origin.y)
+    first = np.array([*corner, round(start.yaw / step) % HEADINGS])
+    _steer(opened, reached, first, moves, spec.resolution)
+    return reached
+
+
 def _moves(*, sideways: bool) -> NDArray[np.int64]:
     """Return (HEADINGS, M, 3) the steps from a pose: heading, row, column."""
     steps = [(i, j) for i in range(-2, 3) for j in range(-2, 3) if math.gcd(i, j) == 1]
@@ -209,6 +231,32 @@ def _fill(
                     break
             if inside:
                 opened[i, j] = False
+
+
+@kernel
+def _steer(opened: Any, reached: Any, start: Any, moves: Any, size: float) -> None:
+    """Flood from a start x, y (m, from the corner), heading by moves (length, turn)."""
+    headings, height, width = opened.shape
+    stack = np.empty((opened.size, 3), np.float32)
+    stack[0] = start
+    count = 1
+    while count > 0:
+        count -= 1
+        x, y, k = stack[count, 0], stack[count, 1], int(stack[count, 2])
+        for m in range(moves.shape[0]):
+            length, turn = moves[m, 0], moves[m, 1]
+            yaw = 2 * np.pi / headings * (k + 0.5 * turn)
+            k2 = int(k + turn) % headings
+            x2, y2 = x + length * math.cos(yaw), y + length * math.sin(yaw)
+            row, column = int(y2 / size), int(x2 / size)
+            if not (0 <= row < height and 0 <= column < width):
+                continue
+            between = opened[k, int((y + y2) / 2 / size), int((x + x2) / 2 / size)]
+            if not between or not opened[k2, row, column] or reached[k2, row, column]:
+                continue
+            reached[k2, row, column] = True
+            stack[count, 0], stack[count, 1], stack[count, 2] = x2, y2, k2
+            count += 1
 
 
 @kernel

@@ -4,15 +4,15 @@ Every world has a path for a disc of :data:`CORRIDOR_M`; without one it is drawn
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import UnknownNameError
-from navette.geometry import Pose2
-from navette.navigation.bench.shortest import grid_between, shortest_length
+from navette.geometry import Pose2, Transform3
 from navette.navigation.grids import GridSpec
+from navette.navigation.worlds.shortest import grid_between, shortest_length
 from navette.sim import Scene, World
 
 CORRIDOR_M = 0.75
@@ -71,7 +71,7 @@ class _Plot:
             world.add_cylinder((x, y), self.post_m)
         for x, y, wide, deep in self.boxes.tolist():
             world.add_box((x, y), (wide, deep))
-        return world.scene()
+        return replace(world.scene(), start=Transform3.from_pose2(self.start))
 
     def shortest(self) -> float | None:
         """Return the length of the shortest path of a disc, or None."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from random_goals import ROBOTS, random_goal
+from reachability import Reach, WorldGeometry, goal_reach
 
-from navette.geometry import DIFFERENTIAL, Pose2
-from navette.navigation.bench.random_goals import ROBOTS, random_goal
-from navette.navigation.bench.reachability import Reach, WorldGeometry, goal_reach
+from navette.geometry import ACKERMANN, DIFFERENTIAL, Pose2
 
 BODY = np.array([(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)])
 
@@ -42,6 +42,23 @@ def test_a_door_decides(door_m: float, goal: tuple[float, float], reach: Reach) 
     start = Pose2(-2.0, 0.7, 2.0)
     found = goal_reach(
         room(door_m), BODY, start, goal, drive=DIFFERENTIAL, tolerance_m=0.3
+    )
+    assert found is reach
+
+
+@pytest.mark.parametrize(
+    ("radius_m", "reach"), [(0.8, Reach.SURE), (30.0, Reach.UNSURE)]
+)
+def test_a_car_needs_room_to_turn(radius_m: float, reach: Reach) -> None:
+    """The door lies ahead to the left, and the goal beyond it."""
+    found = goal_reach(
+        room(0.7),
+        BODY,
+        Pose2(-2.0, -1.2, 0.0),
+        (2.2, 0.0),
+        drive=ACKERMANN,
+        tolerance_m=0.3,
+        turning_radius_m=radius_m,
     )
     assert found is reach
 

@@ -1,0 +1,1 @@
+"""Interfaces of slam_toolbox."""

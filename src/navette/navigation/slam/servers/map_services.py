@@ -1,0 +1,192 @@
+"""Services of the SLAM's map, under Navette's, Nav2's and slam_toolbox's names."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.geometry.map_files import OccupancyMap, write_occupancy_map
+from navette.msgs.nav2_msgs.srv import SaveMap
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.nav_msgs.srv import GetMap
+from navette.msgs.slam_toolbox import srv as toolbox
+from navette.msgs.std_srvs.srv import Empty
+from navette.navigation.slam.graph_file import SUFFIX, read_graph, write_graph
+from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.scan_graph import ScanGraph
+from navette.runtime.node import Node
+
+# Name of a map without one, as of map_saver in the current folder.
+_UNNAMED = "map"
+_FAILED = (OSError, ValueError, RuntimeError)
+
+
+@dataclass(frozen=True)
+class MapSession:
+    """The map behind the services.
+
+    Attributes:
+        params: the parameters of now.
+        graph: the scans and poses of now.
+        render: returns the map of now.
+        message: returns the same as a message.
+        load: continues a map at a rough pose of the robot; whether the map grows.
+        empty: begins a new map where the robot is.
+        restart: starts as at the start of the node.
+        pause: stops (True) or continues the use of scans.
+        is_paused: whether scans are left out.
+    """
+
+    params: Callable[[], SlamParams]
+    graph: Callable[[], ScanGraph]
+    render: Callable[[], OccupancyMap]
+    message: Callable[[], OccupancyGrid]
+    load: Callable[[ScanGraph, Pose2, bool], None]
+    empty: Callable[[], None]
+    restart: Callable[[], None]
+    pause: Callable[[bool], None]
+    is_paused: Callable[[], bool]
+
+
+class SlamMapServices:
+    """``slam/…`` with Nav2's types, and ``slam_toolbox/…`` with slam_toolbox's."""
+
+    def __init__(self, node: Node, session: MapSession) -> None:
+        self._node, self._session = node, session
+        node.create_service(SaveMap, "slam/save_map", self._save)
+        node.create_service(Empty, "slam/restart", self._restart)
+        for kind, name, callback in (
+            (toolbox.SaveMap, "save_map", self._save_image),
+            (toolbox.SerializePoseGraph, "serialize_map", self._serialize),
+            (toolbox.DeserializePoseGraph, "deserialize_map", self._deserialize),
+            (toolbox.Pause, "pause_new_measurements", self._pause),
+            (toolbox.Reset, "reset", self._reset),
+            (GetMap, "dynamic_map", self._get),
+        ):
+            node.create_service(kind, f"slam_toolbox/{name}", callback)
+
+    def _save(self, request: Any, response: Any) -> Any:
+        """Write MAP.yaml and its image, and MAP.slam to continue the map."""
+        try:
+            stem = _stem(request.map_url, "map_url")
+            written = self._write_image(
+                stem,
+                mode=request.map_mode or "trinary",
+                image_format=request.image_format.lower(),
+            )
+            write_graph(_with_suffix(stem), self._session.graph())
+        except _FAILED as error:
+            self._error(f"map not saved: {error}")
+            return response
+        self._info(f"map saved: {written}, and {stem.name}{SUFFIX}")
+        response.result = True
+        return response
+
+    def _save_image(self, request: Any, response: Any) -> Any:
+        """Write NAME.yaml and its image."""
+        if not len(self._session.graph()):
+            self._error("map not saved: no scan has arrived")
+            response.result = response.RESULT_NO_MAP_RECEIEVD
+            return response
+        try:
+            stem = _stem(request.name.data or _UNNAMED, "name")
+            written = self._write_image(stem)
+        except _FAILED as error:
+            self._error(f"map not saved: {error}")
+            response.result = response.RESULT_UNDEFINED_FAILURE
+            return response
+        self._info(f"map saved: {written}")
+        response.result = response.RESULT_SUCCESS
+        return response
+
+    def _serialize(self, request: Any, response: Any) -> Any:
+        """Write FILENAME.slam: scans and pose graph."""
+        try:
+            path = _with_suffix(_stem(request.filename, "filename"))
+            if not len(self._session.graph()):
+                raise InvalidValueError("no scan has arrived")
+            write_graph(path, self._session.graph())
+        except _FAILED as error:
+            self._error(f"scans not saved: {error}")
+            response.result = response.RESULT_FAILED_TO_WRITE_FILE
+            return response
+        self._info(f"scans saved: {path}")
+        response.result = response.RESULT_SUCCESS
+        return response
+
+    def _deserialize(self, request: Any, response: Any) -> Any:
+        """Continue the map FILENAME.slam, or localize in it.
+
+        The response has no field: the log and the status have the outcome.
+        """
+        kinds = (
+            request.START_AT_FIRST_NODE,
+            request.START_AT_GIVEN_POSE,
+            request.LOCALIZE_AT_POSE,
+        )
+        try:
+            if request.match_type not in kinds:
+                raise InvalidValueError(
+                    f"match_type {request.match_type}; expected 1 (at the first scan), "
+                    "2 (at initial_pose) or 3 (at initial_pose, the map stays as it is)"
+                )
+            path = _with_suffix(_stem(request.filename, "filename"))
+            graph = read_graph(path, self._session.params())
+            start = graph.pose(0)
+            if request.match_type != request.START_AT_FIRST_NODE:
+                given = request.initial_pose
+                start = Pose2(given.x, given.y, given.theta)
+        except _FAILED as error:
+            self._error(f"map not loaded: {error}")
+            return response
+        is_mapping = request.match_type != request.LOCALIZE_AT_POSE
+        self._session.load(graph, start, is_mapping)
+        verb = "continued" if is_mapping else "used for localization"
+        self._info(f"{path}: {len(graph)} scans, {verb}")
+        return response
+
+    def _pause(self, _: Any, response: Any) -> Any:
+        """Pause, or continue."""
+        self._session.pause(not self._session.is_paused())
+        response.status = True
+        return response
+
+    def _reset(self, request: Any, response: Any) -> Any:
+        """Begin a new map where the robot is."""
+        self._session.empty()
+        self._session.pause(request.pause_new_measurements)
+        response.result = response.RESULT_SUCCESS
+        return response
+
+    def _restart(self, _: Any, response: Any) -> Any:
+        """Begin again as at the start of the node."""
+        self._session.restart()
+        return response
+
+    def _get(self, _: Any, response: Any) -> Any:
+        if len(self._session.graph()):
+            response.map = self._session.message()
+        return response
+
+    def _write_image(self, stem: Path, **options: Any) -> Path:
+        return write_occupancy_map(stem, self._session.render(), **options)
+
+    def _error(self, text: str) -> None:
+        self._node.get_logger().error(text)
+
+    def _info(self, text: str) -> None:
+        self._node.get_logger().info(text)
+
+
+def _stem(url: str, field: str) -> Path:
+    """Return the path of a map without the suffix of its scans."""
+    path = Path(url.removeprefix("file://")).expanduser()
+    if not path.name:
+        raise InvalidValueError(f"{field} is empty; expected the path of a file")
+    return path.with_suffix("") if path.suffix == SUFFIX else path
+
+
+def _with_suffix(stem: Path) -> Path:
+    return stem.with_name(stem.name + SUFFIX)
