@@ -432,6 +432,54 @@ def test_the_environment_is_checked() -> None:
     assert found.listen == ("tcp/[::]:0", "udp/1.2.3.4:5")
 
 
+def overridden(text: str) -> Settings:
+    return Settings.from_environment({"ZENOH_CONFIG_OVERRIDE": text})
+
+
+def test_single_values_of_zenohs_configuration_are_overridden() -> None:
+    settings = overridden(
+        'mode="client"; connect/endpoints=["tcp/10.0.0.1:7447"];'
+        "transport/link/tx/lease=2;"
+    )
+    assert settings.router == ("tcp/10.0.0.1:7447",)
+    assert not settings.is_local
+    config = peer_config(settings)
+    assert config.get_json("mode") == '"client"'
+    assert config.get_json("transport/link/tx/lease") == "2"
+    assert config.get_json("connect/endpoints") == '["tcp/10.0.0.1:7447"]'
+
+
+def test_endpoints_by_mode_are_left_to_zenoh() -> None:
+    settings = overridden('connect/endpoints={peer: ["tcp/10.0.0.1:7447"]}')
+    found = json.loads(peer_config(settings).get_json("connect/endpoints"))
+    assert found["peer"] == ["tcp/10.0.0.1:7447"]
+
+
+def test_an_override_that_zenoh_does_not_know_is_an_error() -> None:
+    with pytest.raises(InvalidValueError, match="'lease' is not key=value"):
+        overridden("lease")
+    with pytest.raises(InvalidValueError, match=r"OVERRIDE: leese=3 is refused"):
+        peer_config(overridden("leese=3"))
+
+
+def test_a_client_by_override_meets_the_others() -> None:
+    router = free_endpoint()
+    near = ZenohTransport(7, lambda: 5, Settings(router=(router,)))
+    far = ZenohTransport(
+        7, lambda: 6, overridden(f'mode="client";connect/endpoints=["{router}"]')
+    )
+    far.announce(NodeInfo("client", "/"))
+    until(lambda: NodeInfo("client", "/") in near.remote_nodes(), "the client's node")
+    items, _ = subscribe(near, node="ear")
+    publisher = advertise(far)
+    until(lambda: publisher.matched_count, "the subscription")
+    publisher.send(String(data="by the router"), 0, 1)
+    until(lambda: items, "the message")
+    assert texts(items) == ["by the router"]
+    far.close()
+    near.close()
+
+
 @pytest.mark.parametrize(
     ("variables", "wanted"),
     [

@@ -57,6 +57,7 @@ class Network:
         nodes: full names by domain, as listed by the router; None without a router.
         published: topics by domain and full name of the node.
         session_file: value of ZENOH_SESSION_CONFIG_URI.
+        overrides: value of ZENOH_CONFIG_OVERRIDE.
         middleware: value of RMW_IMPLEMENTATION, for ROS 2 programs.
         run: the private run that programs started here join; None: the shared network.
         other_runs: names of the user's other runs.
@@ -67,6 +68,7 @@ class Network:
     nodes: Mapping[int, Sequence[str]] | None = field(default_factory=dict)
     published: Mapping[int, Mapping[str, Sequence[str]]] = field(default_factory=dict)
     session_file: str = ""
+    overrides: str = ""
     middleware: str = ""
     run: RunInfo | None = None
     other_runs: tuple[str, ...] = ()
@@ -107,6 +109,7 @@ def look_at_network() -> Network:
         None if known is None else nodes,
         published,
         os.environ.get("ZENOH_SESSION_CONFIG_URI", ""),
+        os.environ.get("ZENOH_CONFIG_OVERRIDE", ""),
         os.environ.get("RMW_IMPLEMENTATION", ""),
         run,
         tuple(each.name for each in live_runs() if each != run),
@@ -174,6 +177,9 @@ def check_network(network: Network, domain: int | None) -> Iterator[Diagnosis]:
         )
     if network.session_file:
         text = f"settings of {network.session_file} (ZENOH_SESSION_CONFIG_URI)"
+        yield Diagnosis(Rating.NOTE, NETWORK, "Zenoh", text)
+    if network.overrides:
+        text = f"{network.overrides} (ZENOH_CONFIG_OVERRIDE)"
         yield Diagnosis(Rating.NOTE, NETWORK, "Zenoh", text)
     yield from _run_findings(network)
     for router in network.routers if network.run is None else ():

@@ -97,6 +97,8 @@ def peer_config(settings: Settings, zid: str = "") -> zenoh.Config:
     # Zenoh drops longer messages silently, without assembling them.
     max_size = _OVERHEAD_BYTES + 2 * settings.max_message_bytes
     config.insert_json5("transport/link/rx/max_message_size", str(max_size))
+    for key, value in settings.overrides:
+        _override(config, key, value)
     return config
 
 
@@ -127,6 +129,16 @@ def router_endpoints(settings: Settings) -> list[str]:
         return list(settings.router)
     found = json.loads(peer_config(settings).get_json("connect/endpoints"))
     return list(found.get("peer", [])) if isinstance(found, dict) else list(found)
+
+
+def _override(config: zenoh.Config, key: str, value: str) -> None:
+    try:
+        config.insert_json5(key, value)
+    except zenoh.ZError as error:
+        raise InvalidValueError(
+            f"ZENOH_CONFIG_OVERRIDE: {key}={value} is refused by Zenoh: {error}; "
+            "expected a key of its configuration with a JSON5 value"
+        ) from error
 
 
 def _base(settings: Settings, path: Path | None) -> zenoh.Config:

@@ -1,5 +1,6 @@
 """Network settings from the environment; loopback only by default."""
 
+import json
 import math
 import os
 from collections.abc import Mapping
@@ -28,6 +29,7 @@ class Settings:
         listen: endpoints at which other processes reach this one.
         session_file: a Zenoh configuration (JSON5) to start from.
         router_file: the same for the router, if this process becomes the router.
+        overrides: keys of the session's Zenoh configuration and their values (JSON5).
         explicit: which of ``router`` and ``listen`` were set: they override the files.
         max_message_bytes: longer messages are rejected.
         service_timeout_s: time for the reply of another process; an action's result is
@@ -41,6 +43,7 @@ class Settings:
     listen: tuple[str, ...] = (DEFAULT_LISTEN,)
     session_file: Path | None = None
     router_file: Path | None = None
+    overrides: tuple[tuple[str, str], ...] = ()
     explicit: frozenset[str] = frozenset()
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
     service_timeout_s: float = DEFAULT_SERVICE_TIMEOUT_S
@@ -71,6 +74,7 @@ class Settings:
             listen=(listen,),
             session_file=None,
             router_file=None,
+            overrides=(),
             security=None,
             explicit=frozenset({"router", "listen"}),
         )
@@ -81,14 +85,17 @@ class Settings:
     ) -> "Settings":
         """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (separated by commas),
         ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI``,
-        ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES``,
+        ``ZENOH_CONFIG_OVERRIDE``, ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES``,
         ``NAVETTE_SERVICE_TIMEOUT`` and ``NAVETTE_RETRANSMIT``.
 
         Raises:
             InvalidValueError: a value is invalid; names variable and allowed values.
         """
+        overrides = _overrides(environment, "ZENOH_CONFIG_OVERRIDE")
         router = _endpoints(environment, "NAVETTE_ROUTER")
+        router = router or _pop_endpoints(overrides, "connect/endpoints")
         listen = _endpoints(environment, "NAVETTE_LISTEN")
+        listen = listen or _pop_endpoints(overrides, "listen/endpoints")
         given = {"router": router, "listen": listen}
         folder = environment.get("NAVETTE_SECURITY", "")
         # With passwords or rules only, links are not encrypted.
@@ -99,6 +106,7 @@ class Settings:
             security=Path(folder) if folder else None,
             session_file=_file(environment, "ZENOH_SESSION_CONFIG_URI"),
             router_file=_file(environment, "ZENOH_ROUTER_CONFIG_URI"),
+            overrides=tuple(overrides.items()),
             explicit=frozenset(name for name, value in given.items() if value),
             max_message_bytes=_positive(
                 environment, "NAVETTE_MAX_MESSAGE_BYTES", DEFAULT_MAX_MESSAGE_BYTES
@@ -143,6 +151,34 @@ def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
                 f"such as {DEFAULT_ROUTER}"
             )
     return endpoints
+
+
+def _overrides(environment: Mapping[str, str], name: str) -> dict[str, str]:
+    """Return the values (JSON5) by key of ``key=value;key=value``, as in rmw_zenoh."""
+    overrides = {}
+    for part in environment.get(name, "").split(";"):
+        if not part.strip():
+            continue
+        key, equals, value = part.partition("=")
+        if not (key.strip() and equals and value.strip()):
+            raise InvalidValueError(
+                f"{name}: {part!r} is not key=value; expected for example "
+                "transport/link/tx/lease=60000;scouting/multicast/enabled=false"
+            )
+        overrides[key.strip()] = value.strip()
+    return overrides
+
+
+def _pop_endpoints(overrides: dict[str, str], key: str) -> tuple[str, ...]:
+    """Remove and return a list of endpoints; other forms remain for Zenoh to read."""
+    try:
+        endpoints = json.loads(overrides.get(key, "null"))
+    except ValueError:
+        return ()
+    if not isinstance(endpoints, list):
+        return ()
+    del overrides[key]
+    return tuple(map(str, endpoints))
 
 
 def _file(environment: Mapping[str, str], name: str) -> Path | None:

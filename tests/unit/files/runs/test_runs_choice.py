@@ -30,6 +30,7 @@ def test_without_runs_the_shared_network_is_joined() -> None:
         "NAVETTE_LOCKSTEP",
         "ZENOH_SESSION_CONFIG_URI",
         "ZENOH_ROUTER_CONFIG_URI",
+        "ZENOH_CONFIG_OVERRIDE",
     ],
 )
 def test_a_program_that_names_a_network_shares_it(
