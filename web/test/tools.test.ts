@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import type { ToolContext } from "../src/tools/tool";
-import { MeasureTool } from "../src/tools/tools";
+import { MeasureTool } from "../src/tools/measure";
 
 describe("measuring", () => {
   let tool: MeasureTool;

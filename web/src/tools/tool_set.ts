@@ -4,8 +4,12 @@ import type { Dispose } from "../connection/connection";
 import type { Operator } from "../robot/operator";
 import { listenToPointer, type GestureTarget } from "../scene/pointer";
 import type { Scene } from "../scene/scene";
+import { GoalPoseTool, GoalTool } from "./goal";
+import { InspectTool } from "./inspect";
+import { MeasureTool } from "./measure";
+import { EstimateTool } from "./pose_estimate";
 import type { Tool } from "./tool";
-import { EstimateTool, GoalPoseTool, GoalTool, InspectTool, MeasureTool, routeOf, WaypointsTool } from "./tools";
+import { routeOf, WaypointsTool } from "./waypoints";
 
 const TURN_PER_PX = 0.008;
 
