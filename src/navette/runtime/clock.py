@@ -5,6 +5,7 @@ jumps there, a paced clock waits first, and with the system clock the loop waits
 modules of the runtime do not read the wall clock.
 """
 
+import threading
 import time
 from abc import ABC, abstractmethod
 
@@ -169,6 +170,24 @@ class PacedClock(VirtualClock):
 def monotonic_ns() -> int:
     """Return the machine's steady clock, for STEADY_TIME and measurements."""
     return time.perf_counter_ns()
+
+
+class SteadyClock:
+    """Steady time of the machine and CPU time of the calling thread."""
+
+    @property
+    def now_s(self) -> float:
+        """Seconds since any start; never steps back."""
+        return time.perf_counter()
+
+    @property
+    def thread_cpu_s(self) -> float:
+        """CPU time of the calling thread in seconds."""
+        return time.thread_time()
+
+    def sleep(self, duration_s: float) -> None:
+        """Block the calling thread."""
+        threading.Event().wait(duration_s)
 
 
 class Stopwatch:

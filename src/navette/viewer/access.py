@@ -3,7 +3,7 @@
 import ipaddress
 import socket
 import ssl
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from navette.viewer.encryption import VARIABLE, tls_context
 from navette.viewer.listening import url_of
 from navette.viewer.login import TOKEN_VARIABLE, Login, new_token
 from navette.viewer.params import ViewerParams
+from navette.viewer.wall_clock import WallClock
 
 _MAX_USERS = 1 << 16  # bytes of the file
 
@@ -34,10 +35,7 @@ class Access:
 
     @classmethod
     def of(
-        cls,
-        params: ViewerParams,
-        environment: Mapping[str, str],
-        now_s: Callable[[], float],
+        cls, params: ViewerParams, environment: Mapping[str, str], clock: WallClock
     ) -> "Access":
         """Read the token and the keys.
 
@@ -59,7 +57,7 @@ class Access:
         is_open = is_remote and params.allow_anyone
         token = "" if is_open else new_token(environment.get(TOKEN_VARIABLE))
         tokens = [token, *_users(Path(folder))] if folder else [token]
-        login = Login(tokens, now_s, is_required=not is_open)
+        login = Login(tokens, clock, is_required=not is_open)
         return cls(login, token, tls, is_remote)
 
     def url(self, host: str, port: int) -> str:

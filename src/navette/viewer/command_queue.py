@@ -8,11 +8,13 @@ run before the events that are due, so that slices without a rest would stop the
 
 import itertools
 import threading
-import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
+from typing import Protocol
 
+from navette.viewer.thread_bridge import ThreadBridge
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.wall_clock import WallClock
 from navette.viewer.work_time import WorkTime
 
 _SLICE_S = 0.002  # after which other callbacks run first
@@ -23,36 +25,8 @@ _BURST_S = 0.25  # a page that opens subscribes to some 40 topics
 Command = Callable[[], None]
 
 
-class CommandQueue:
-    """Commands in lanes, one lane per client; lanes take turns.
-
-    :meth:`add` is called on any thread, commands run on the executor's.
-
-    Args:
-        run_soon: runs a function on the executor's thread.
-        run_later: runs a function on the socket thread after a delay in seconds.
-        now_s: monotonic wall time.
-        cpu_s: CPU time of the calling thread.
-    """
-
-    def __init__(
-        self,
-        run_soon: Callable[[Command], None],
-        run_later: Callable[[float, Command], None],
-        now_s: Callable[[], float],
-        *,
-        cpu_s: Callable[[], float] = time.thread_time,
-    ) -> None:
-        self._run_soon, self._run_later, self._now_s = run_soon, run_later, now_s
-        self._work = WorkTime(now_s, cpu_s)
-        self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}
-        self._turns: deque[Hashable] = deque()
-        self._urgent: OrderedDict[Hashable, Command] = OrderedDict()
-        self._lock = threading.Lock()
-        self._is_scheduled = False
-        self._numbers = itertools.count()
-        self._budget = TokenBucket(_SHARE, _BURST_S, now_s)
-        self._rested_s = now_s()  # when the rest after the last slice ends
+class CommandRunner(Protocol):
+    """Runs commands on the executor's thread."""
 
     def add(
         self,
@@ -62,12 +36,40 @@ class CommandQueue:
         *,
         is_next: bool = False,
     ) -> None:
-        """Queue a command behind those of its lane.
+        """Run a command behind those of its lane; return at once.
 
         Args:
-            key: a queued command of the same key is dropped.
+            key: a command of the same key that has not run yet is dropped.
             is_next: before all other commands; for commands that end work.
         """
+
+
+class CommandQueue:
+    """Commands in lanes, one lane per client; lanes take turns.
+
+    A :class:`CommandRunner` whose :meth:`add` is called on any thread.
+    """
+
+    def __init__(self, bridge: ThreadBridge, clock: WallClock) -> None:
+        self._bridge, self._clock = bridge, clock
+        self._work = WorkTime(clock)
+        self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}
+        self._turns: deque[Hashable] = deque()
+        self._urgent: OrderedDict[Hashable, Command] = OrderedDict()
+        self._lock = threading.Lock()
+        self._is_scheduled = False
+        self._numbers = itertools.count()
+        self._budget = TokenBucket(_SHARE, _BURST_S, clock)
+        self._rested_s = clock.now_s  # when the rest after the last slice ends
+
+    def add(
+        self,
+        lane: Hashable,
+        command: Command,
+        key: Hashable | None = None,
+        *,
+        is_next: bool = False,
+    ) -> None:
         with self._lock:
             name = next(self._numbers) if key is None else (key,)
             self._drop(lane, name)
@@ -86,13 +88,13 @@ class CommandQueue:
 
     def _run_slice(self) -> None:
         """Run commands for a short time, then let other callbacks run."""
-        begin_s = self._now_s()
+        begin_s = self._clock.now_s
         self._work.begin()
         while (command := self._next()) is not None:
             command()
-            if self._now_s() - begin_s >= _SLICE_S:
+            if self._clock.now_s - begin_s >= _SLICE_S:
                 break
-        work_s, now_s = self._work.elapsed_s(), self._now_s()
+        work_s, now_s = self._work.elapsed_s(), self._clock.now_s
         with self._lock:
             self._budget.take(work_s)
             self._rested_s = now_s + min(now_s - begin_s, _MAX_REST_S)
@@ -104,13 +106,16 @@ class CommandQueue:
 
     def _wait_s(self) -> float:
         """Return the time until the next slice may begin."""
-        return max(self._rested_s - self._now_s(), self._budget.wait_s())
+        return max(self._rested_s - self._clock.now_s, self._budget.wait_s())
 
     def _schedule(self, wait_s: float) -> None:
         if wait_s > 0.0:
-            self._run_later(wait_s, lambda: self._run_soon(self._run_slice))
+            self._bridge.call_later(wait_s, self._run_soon)
         else:
-            self._run_soon(self._run_slice)
+            self._run_soon()
+
+    def _run_soon(self) -> None:
+        self._bridge.run_soon(self._run_slice, "command")
 
     def _drop(self, lane: Hashable, name: Hashable) -> None:
         self._urgent.pop((lane, name), None)

@@ -15,11 +15,16 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.msgs.sensor_msgs.msg import CompressedImage, Image
+from navette.viewer.problem_reports import ProblemReports
 from navette.viewer.token_bucket import TokenBucket
 from navette.viewer.topic_ends import TopicEnd
+from navette.viewer.wall_clock import WallClock
 
 RAW, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 SUFFIX = "/compressed"
+
+DeliverImage = Callable[[CompressedImage], None]
+"""Receives the compressed images of a topic, on the compressor's thread."""
 
 _QUALITY = 80
 # Bytes of a pixel, and where red, green and blue are in it.
@@ -108,23 +113,19 @@ class ImageCompressor:
 
     Args:
         rate_hz: most images per second of each topic.
-        now_s: monotonic wall time.
-        on_problem: called in that thread with the reason why an image is refused.
     """
 
     def __init__(
-        self,
-        rate_hz: float,
-        now_s: Callable[[], float],
-        on_problem: Callable[[str], None],
+        self, rate_hz: float, clock: WallClock, problems: ProblemReports
     ) -> None:
-        self._rate_hz, self._now_s, self._on_problem = rate_hz, now_s, on_problem
+        self._rate_hz, self._clock, self._reports = rate_hz, clock, problems
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="navette-images")
         self._problems = set[str]()
 
-    def stream(self, deliver: Callable[[CompressedImage], None]) -> "_Stream":
+    def stream(self, deliver: DeliverImage) -> "_Stream":
         """Return the receiver of one topic's images; ``deliver`` gets the results."""
-        return _Stream(self, TokenBucket(self._rate_hz, 1.0, self._now_s), deliver)
+        budget = TokenBucket(self._rate_hz, 1.0, self._clock)
+        return _Stream(self, budget, deliver=deliver)
 
     def close(self) -> None:
         self._worker.shutdown(cancel_futures=True)
@@ -136,7 +137,7 @@ class ImageCompressor:
         """Report a problem once."""
         if problem not in self._problems and len(self._problems) < 16:
             self._problems.add(problem)
-            self._on_problem(problem)
+            self._reports.image_refused(problem)
 
 
 class _Stream:
@@ -144,7 +145,8 @@ class _Stream:
         self,
         compressor: ImageCompressor,
         budget: TokenBucket,
-        deliver: Callable[[CompressedImage], None],
+        *,
+        deliver: DeliverImage,
     ) -> None:
         self._compressor, self._budget, self._deliver = compressor, budget, deliver
         self._is_busy = threading.Event()

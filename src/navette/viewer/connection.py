@@ -12,6 +12,7 @@ from websockets.frames import CTRL_OPCODES, CloseCode, Frame
 from websockets.protocol import Event
 
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.wall_clock import WallClock
 
 _MAX_FRAGMENTS = 256  # of a message
 # Pings and pongs of a client; ordinary clients send less than one a second.
@@ -46,11 +47,12 @@ class BoundedConnection(ServerConnection):
     """A connection whose fragments and control frames are bounded."""
 
     limit: ConnectionLimit
+    clock: WallClock
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
         self._fragments = 0
-        self._control = TokenBucket(_CONTROL_PER_S, _CONTROL_BURST, self.loop.time)
+        self._control = TokenBucket(_CONTROL_PER_S, _CONTROL_BURST, self.clock)
         self.limit.add(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -77,10 +79,12 @@ class BoundedConnection(ServerConnection):
         return f"more than {_MAX_FRAGMENTS} fragments in a message"
 
 
-def bounded_by(of_server: ConnectionLimit) -> type[BoundedConnection]:
+def bounded_by(
+    of_server: ConnectionLimit, wall_clock: WallClock
+) -> type[BoundedConnection]:
     """Return the class of the connections of one server."""
 
     class Connection(BoundedConnection):
-        limit = of_server
+        limit, clock = of_server, wall_clock
 
     return Connection

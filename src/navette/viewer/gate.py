@@ -1,9 +1,9 @@
 """Decides on every request: page, file, WebSocket or refusal."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from navette.viewer.login import Login, Visitor, token_of
+from navette.viewer.problem_reports import ProblemReports
 from navette.viewer.web import AccessPolicy, HttpResponse, Site, refuse
 
 _MAX_NOTES = 16  # refused origins that are reported
@@ -23,12 +23,7 @@ class WebRequest:
 
 
 class Gate:
-    """Checks host, login and origin of a request, in this order.
-
-    Args:
-        on_refused: called with the reason when an origin is refused, once per origin.
-        on_denied: called when another user of this machine is not accepted.
-    """
+    """Checks host, login and origin of a request, in this order."""
 
     def __init__(
         self,
@@ -36,11 +31,10 @@ class Gate:
         login: Login,
         site: Site,
         *,
-        on_refused: Callable[[str], None],
-        on_denied: Callable[[], None],
+        problems: ProblemReports,
     ) -> None:
         self._policy, self._login, self._site = policy, login, site
-        self._on_refused, self._on_denied = on_refused, on_denied
+        self._problems = problems
         self._noted: set[str] = set()
 
     def page(self, request: WebRequest) -> HttpResponse:
@@ -68,7 +62,7 @@ class Gate:
         denied = self._login.refusal(request.visitor, token)
         if denied is not None:
             if request.visitor.user is not None:
-                self._on_denied()
+                self._problems.user_refused()
             return denied
         refused = self._policy.origin_refusal(request.origin, request.host)
         if not refused:
@@ -78,5 +72,5 @@ class Gate:
             return self._login.token_refusal(request.visitor, token)
         if request.origin not in self._noted and len(self._noted) < _MAX_NOTES:
             self._noted.add(str(request.origin))
-            self._on_refused(refused)
+            self._problems.origin_refused(refused)
         return refuse(403, refused)

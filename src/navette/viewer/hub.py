@@ -7,14 +7,14 @@ to the socket thread.
 """
 
 import itertools
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
 from navette.errors import DecodeError
 from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
-from navette.viewer.command_queue import Command
+from navette.viewer.command_queue import CommandRunner
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.last_value_cache import LastValueCache
 from navette.viewer.liveness import NodeReport
@@ -36,32 +36,26 @@ _TIME, _NODES = "time", "nodes"
 _WATCHES = 0  # lane of the subscriptions that clients share
 
 
-def _call_directly(
-    _lane: Hashable, command: Command, _key: Hashable = None, **_order: bool
-) -> None:
-    command()
-
-
 class Hub:
     """Clients, channels and subscriptions.
 
     Args:
-        forward: runs a command on the executor's thread; returns at once. Its arguments
-            are those of :meth:`~navette.viewer.command_queue.CommandQueue.add`.
+        program: executes the clients' requests.
+        commands: runs the methods of ``program``.
     """
 
     def __init__(
         self,
         program: ProgramCommands,
+        commands: CommandRunner,
         *,
         name: str,
         session_id: str,
         assets: AssetFolders | None = None,
         playback_range: tuple[int, int] | None = None,
-        forward: Callable[..., None] = _call_directly,
     ) -> None:
         self._program = program
-        self._forward = forward
+        self._commands = commands
         self._info = replies.server_info(name, session_id, playback_range)
         self._plays = playback_range is not None
         self._playback: bytes | None = None
@@ -470,7 +464,7 @@ class Hub:
             return
         session.calls.add(call_id)
         command = self._program.call_service
-        self._forward(
+        self._commands.add(
             session.id,
             partial(command, call_id, service, request.encoding, request.data),
         )
@@ -512,15 +506,15 @@ class Hub:
         self, session: Session, command: Callable[..., None], *args: Any
     ) -> None:
         session.pending += 1
-        self._forward(session.id, partial(command, session.id, *args))
+        self._commands.add(session.id, partial(command, session.id, *args))
 
     def _watch(self, watch: Watch) -> None:
         command = partial(self._program.watch, watch)
-        self._forward(watch.client or _WATCHES, command, watch)
+        self._commands.add(watch.client or _WATCHES, command, watch)
 
     def _unwatch(self, watch: Watch) -> None:
         command = partial(self._program.unwatch, watch)
-        self._forward(watch.client or _WATCHES, command, watch, is_next=True)
+        self._commands.add(watch.client or _WATCHES, command, watch, is_next=True)
 
     # -- internals ----------------------------------------------------------------
 

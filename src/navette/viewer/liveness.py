@@ -4,11 +4,12 @@ A node whose program is stopped (Ctrl-Z, SIGSTOP), blocks in a callback or is
 disconnected stays in the graph for some seconds, but it does not respond.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
 from navette.viewer.service_calls import ServiceCalls
+from navette.viewer.wall_clock import WallClock
 
 PERIOD_S = 0.5
 SILENT_S = 1.5  # without a response; detected at most two seconds after a freeze
@@ -49,17 +50,13 @@ class _Record:
 
 
 class LivenessProbe:
-    """Probes the nodes of other processes.
+    """Probes the nodes of other processes."""
 
-    Args:
-        now_s: monotonic wall time.
-    """
-
-    def __init__(self, service_calls: ServiceCalls, now_s: Callable[[], float]) -> None:
+    def __init__(self, service_calls: ServiceCalls, clock: WallClock) -> None:
         self._service_calls = service_calls
-        self._now_s = now_s
+        self._clock = clock
         self._records: dict[str, _Record] = {}
-        self._last_s = now_s()
+        self._last_s = clock.now_s
 
     def step(self, here: set[str], others: Mapping[str, bool]) -> list[NodeReport]:
         """Probe the nodes that are due; return the state of each, sorted by name.
@@ -68,7 +65,7 @@ class LivenessProbe:
             here: nodes of this process; they are alive, since this code runs.
             others: nodes of other processes, and whether they have services to probe.
         """
-        now_s = self._now_s()
+        now_s = self._clock.now_s
         gap_s, self._last_s = now_s - self._last_s, now_s
         if gap_s > _LONGEST_GAP_S:
             for record in self._records.values():
@@ -109,7 +106,7 @@ class LivenessProbe:
         def on_response(response: object, _reason: str) -> None:
             record.is_pending = False
             if response is not None:
-                record.responded_s = self._now_s()
+                record.responded_s = self._clock.now_s
 
         record.probed_s, record.is_pending = now_s, True
         self._service_calls.retain(_service(name))

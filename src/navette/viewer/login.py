@@ -9,13 +9,14 @@ import hashlib
 import hmac
 import secrets
 from collections import OrderedDict
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from urllib.parse import parse_qs, urlsplit
 
 from navette.errors import InvalidValueError
 from navette.viewer.peer_user import is_trusted
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.wall_clock import WallClock
 from navette.viewer.web import HttpResponse, refuse
 
 TOKEN_VARIABLE = "NAVETTE_VIEW_TOKEN"
@@ -45,19 +46,18 @@ class Login:
 
     Args:
         tokens: accepted tokens.
-        now_s: monotonic wall time.
         is_required: false accepts everyone.
     """
 
     def __init__(
         self,
         tokens: Iterable[str],
-        now_s: Callable[[], float],
+        clock: WallClock,
         *,
         is_required: bool = True,
     ) -> None:
         self._digests = [_digest(token) for token in tokens]
-        self._now_s = now_s
+        self._clock = clock
         self._is_required = is_required
         self._failures: OrderedDict[str, TokenBucket] = OrderedDict()
 
@@ -97,7 +97,7 @@ class Login:
     def _count_failure(self, address: str) -> None:
         bucket = self._failures.pop(address, None)
         if bucket is None:
-            bucket = TokenBucket(_FAILURES_PER_S, _FAILURE_BURST - 1, self._now_s)
+            bucket = TokenBucket(_FAILURES_PER_S, _FAILURE_BURST - 1, self._clock)
             if len(self._failures) >= _MAX_ADDRESSES:
                 self._failures.popitem(last=False)
         bucket.take(1)

@@ -13,7 +13,7 @@ displays them.
 import importlib.resources
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
@@ -30,14 +30,11 @@ from navette.msgs import definition_text, get_interface, serialize
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from navette.msgs.sensor_msgs.msg import CompressedImage, Image
 from navette.params import Params
-from navette.runtime.client import Client
-from navette.runtime.clock import Stopwatch
+from navette.runtime.clock import SteadyClock
 from navette.runtime.context import Context
 from navette.runtime.parameter import Parameter
-from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
     qos_profile_best_available,
-    qos_profile_default,
     qos_profile_parameter_events,
 )
 from navette.runtime.stage.stage_node import StageNode
@@ -53,6 +50,7 @@ from navette.viewer.compressed_images import (
 )
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.gate import Gate
+from navette.viewer.graph_access import LocalNode
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
 from navette.viewer.listening import Listeners, listen
@@ -69,7 +67,7 @@ from navette.viewer.server import ViewerServer
 from navette.viewer.service_calls import ServiceCalls
 from navette.viewer.service_requests import ServiceRequests
 from navette.viewer.session import CallId, Watch
-from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
+from navette.viewer.topic_ends import TopicEnd, graph_of, is_hidden, topics_of
 from navette.viewer.web import AccessPolicy, Site
 
 _GRAPH = "graph"  # lane of the refreshes
@@ -116,29 +114,23 @@ class ViewerNode(StageNode):
         self._definitions: dict[str, str | None] = {}
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
-        self._wall = Stopwatch()
-        self._images = ImageCompressor(
-            self.params.image_rate_hz, self._wall_s, self._note_image_problem
-        )
-        self._commands = CommandQueue(
-            partial(self.run_soon, source="command"),
-            lambda delay_s, function: self._server.call_later(delay_s, function),
-            self._wall_s,
-        )
+        self._wall = SteadyClock()
+        self._images = ImageCompressor(self.params.image_rate_hz, self._wall, self)
+        self._commands = CommandQueue(self, self._wall)
         self._hub = Hub(
             self,
+            self._commands,
             name="Navette",
             # The same when a client reconnects, different in the next run.
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
-            forward=self._commands.add,
         )
-        self._publishers = ClientPublishers(self._publisher, self.destroy_publisher)
-        self._playback = PlaybackRequests(playback, self._hub, self._call)
+        self._publishers = ClientPublishers(self)
+        self._playback = PlaybackRequests(playback, self._hub, self)
         self._denial_noted = False
         try:
-            self._access = Access.of(self.params, os.environ, self._wall_s)
+            self._access = Access.of(self.params, os.environ, self._wall)
             self._parameters = self._monitor_nodes()
             self._server = self._make_server(listeners)
             self._server.start()
@@ -199,17 +191,15 @@ class ViewerNode(StageNode):
         if self._refreshing:
             return
         self._refreshing = True
-        wait_s = self._refreshed_s + _REFRESH_S - self._wall_s()
+        wait_s = self._refreshed_s + _REFRESH_S - self._wall.now_s
         if wait_s <= 0.0:
             self._commands.add(_GRAPH, self._refresh)
         else:
-            self._server.call_later(
-                wait_s, partial(self._commands.add, _GRAPH, self._refresh)
-            )
+            self.call_later(wait_s, partial(self._commands.add, _GRAPH, self._refresh))
 
     def _refresh(self) -> None:
         self._refreshing = False
-        self._refreshed_s = self._wall_s()
+        self._refreshed_s = self._wall.now_s
         self._frames = (
             self._frame("map_frame", "map"),
             self._frame("base_frame", "base_link"),
@@ -261,7 +251,7 @@ class ViewerNode(StageNode):
             (end.topic, end.type_name, end.node_full_name)
             for end in self.context.graph.service_endpoints()
             if end.kind.name == "SERVICE"
-            and not _is_hidden(end.topic)
+            and not is_hidden(end.topic)
             and end.type_name.partition("/")[0] not in _EVERY_NODE
         ]
 
@@ -361,25 +351,24 @@ class ViewerNode(StageNode):
     def step_playback(self, client: int) -> None:
         self._execute(client, self._playback.step)
 
-    def _publisher(self, type_name: str, topic: str) -> Publisher[Any]:
-        interface = get_interface(type_name)
-        return self.create_publisher(interface, topic, qos_profile_default)
-
     def _forward(self, watch: Watch, payload: bytes) -> None:
-        self._server.offer(watch, self._now_ns(), payload)
+        self._server.offer(watch, self.now_ns, payload)
 
-    def _now_ns(self) -> int:
-        """Return the time that clients display; callable from any thread."""
+    @property
+    def now_ns(self) -> int:
+        """The time that clients display; callable from any thread."""
         position_ns = self._playback.position_ns()
         return self.get_clock().now_ns if position_ns is None else position_ns
 
-    def _wall_s(self) -> float:
-        return self._wall.elapsed_s
+    # -- ThreadBridge ----------------------------------------------------------------
 
-    # -- between the threads -------------------------------------------------------
+    def call_hub(self, method: Callable[..., None], *args: Any) -> None:
+        self._server.call(method, *args)
 
-    def run_soon(self, function: Callable[[], None], source: str) -> None:
-        """Run ``function`` on the executor's thread, as an event of this node."""
+    def call_later(self, delay_s: float, function: Callable[[], None]) -> None:
+        self._server.call_later(delay_s, function)
+
+    def run_soon(self, function: Callable[[], object], source: str) -> None:
         self.context.loop.call_soon_threadsafe(
             function, f"viewer {source}", self.get_fully_qualified_name()
         )
@@ -393,51 +382,79 @@ class ViewerNode(StageNode):
         finally:
             self._server.call(self._hub.done, client)
 
-    def _call(self, function: Callable[..., None], *args: Any) -> None:
-        self._server.call(function, *args)
+    # -- GraphAccess -----------------------------------------------------------------
+
+    def local_nodes(self) -> Iterable[LocalNode]:
+        nodes: list[LocalNode] = self.context.nodes
+        return nodes
+
+    def node_names(self) -> set[str]:
+        return {info.full_name for info in self.context.graph.nodes()}
+
+    def make_parameter(self, name: str, value: Any) -> Parameter[Any]:
+        try:
+            parameter: Parameter[Any] = Parameter(name, value=value)
+            serialize(parameter.to_parameter_msg())  # must be possible
+        except (MessageError, TypeError, ValueError) as error:
+            raise ParameterError(str(error)) from None
+        return parameter
+
+    # -- ProblemReports --------------------------------------------------------------
+
+    def image_refused(self, reason: str) -> None:
+        self._warn_soon(f"an image was not compressed: {reason}", "image")
+
+    def origin_refused(self, reason: str) -> None:
+        self._warn_soon(f"a page was refused: {reason}", "refused origin")
+
+    def user_refused(self) -> None:
+        """Print the address with the token once, when another user tries to connect.
+
+        Not by the logger: log messages are published and recorded.
+        """
+        if self._access.is_remote or self._denial_noted:
+            return
+        self._denial_noted = True
+        url = self._access.remote_url(self.params.host, self.port)
+        sys.stderr.write(
+            "live view: refused a program of another user; for access it needs the "
+            f"token: {url}\n"
+        )
+
+    def _warn_soon(self, text: str, source: str) -> None:
+        self.run_soon(lambda: self.get_logger().warning(text), source)
+
+    # -- SiteDocuments ---------------------------------------------------------------
+
+    def layout(self) -> Mapping[str, Any]:
+        return build_layout(*self._frames)
+
+    def health(self) -> Mapping[str, Any]:
+        return {
+            "status": "ok",
+            "version": __version__,
+            "clients": self._hub.clients,
+            "topics": len(self._hub.channels),
+            "time_s": self.now_ns / 1e9,
+        }
 
     # -- internals -----------------------------------------------------------------
 
     def _monitor_nodes(self) -> ParameterRequests:
-        now_s = self._wall_s
-
-        def client_of(service: str, type_name: str) -> Client:
-            return self.create_client(get_interface(type_name), service)
-
-        service_calls = ServiceCalls(client_of, now_s)
-        self._services = ServiceRequests(self._hub, self._call, service_calls)
+        calls = ServiceCalls(self, self._wall)
+        self._services = ServiceRequests(self._hub, self, calls)
         self._remote = RemoteParameters(
-            service_calls,
-            lambda name, value: _parameter(name, value).to_parameter_msg(),
-            now_s,
-            changed=partial(self._call, self._hub.parameters_changed),
-            described=partial(self._call, self._hub.set_parameter_texts),
+            self._hub, self, graph=self, service_calls=calls, clock=self._wall
         )
         self._monitor = NodeMonitor(
             self._hub,
-            self._call,
-            self.run_soon,
-            self._list_nodes,
-            service_calls,
-            self._remote,
-            now_s,
+            self,
+            graph=self,
+            service_calls=calls,
+            remote=self._remote,
+            clock=self._wall,
         )
-        return ParameterRequests(
-            self._hub,
-            self._call,
-            lambda: self.context.nodes,
-            self._remote,
-            _parameter,
-        )
-
-    def _list_nodes(self) -> tuple[set[str], dict[str, bool]]:
-        here = {node.get_fully_qualified_name() for node in self.context.nodes}
-        names = {info.full_name for info in self.context.graph.nodes()}
-        others = {name: self._remote.serves(name) for name in names - here}
-        return (
-            {name for name in here if not _is_hidden(name)},
-            {name: serves for name, serves in others.items() if not _is_hidden(name)},
-        )
+        return ParameterRequests(self._hub, self, graph=self, remote=self._remote)
 
     def _serving_elsewhere(self) -> dict[str, bytes]:
         """Return the gid of each node of another process that serves parameters."""
@@ -454,73 +471,23 @@ class ViewerNode(StageNode):
     def _make_server(self, listeners: Listeners | None) -> ViewerServer:
         params = self.params
         page = importlib.resources.files("navette.viewer") / "page"
-        site = Site(read_page(page), lambda: build_layout(*self._frames), self._health)
         gate = Gate(
             AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
             self._access.login,
-            site,
-            on_refused=self._note_refused_origin,
-            on_denied=self._note_denied,
+            Site(read_page(page), self),
+            problems=self,
         )
         return ViewerServer(
             self._hub,
             gate,
             tls=self._access.tls,
             listeners=listeners or listen(params.host, params.port),
-            now_ns=self._now_ns,
-            wall_s=self._wall_s,
-            on_period=self._monitor.on_period,
+            time=self,
+            clock=self._wall,
+            monitor=self._monitor,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
         )
-
-    def _note_image_problem(self, problem: str) -> None:
-        def warn() -> None:
-            self.get_logger().warning(f"an image was not compressed: {problem}")
-
-        self.run_soon(warn, "image")
-
-    def _note_refused_origin(self, reason: str) -> None:
-        def warn() -> None:
-            self.get_logger().warning(f"a page was refused: {reason}")
-
-        self.run_soon(warn, "refused origin")
-
-    def _note_denied(self) -> None:
-        """Print the address with the token once, when another user tries to connect.
-
-        Not by the logger: log messages are published and recorded.
-        """
-        if self._access.is_remote or self._denial_noted:
-            return
-        self._denial_noted = True
-        url = self._access.remote_url(self.params.host, self.port)
-        sys.stderr.write(
-            "live view: refused a program of another user; for access it needs the "
-            f"token: {url}\n"
-        )
-
-    def _health(self) -> dict[str, Any]:
-        return {
-            "status": "ok",
-            "version": __version__,
-            "clients": self._hub.clients,
-            "topics": len(self._hub.channels),
-            "time_s": self._now_ns() / 1e9,
-        }
-
-
-def _parameter(name: str, value: Any) -> Parameter[Any]:
-    try:
-        parameter: Parameter[Any] = Parameter(name, value=value)
-        serialize(parameter.to_parameter_msg())  # must be possible
-    except (MessageError, TypeError, ValueError) as error:
-        raise ParameterError(str(error)) from None
-    return parameter
-
-
-def _is_hidden(name: str) -> bool:
-    return any(part.startswith("_") for part in name.split("/"))
 
 
 def _range(playback: Playback) -> tuple[int, int]:

@@ -3,11 +3,17 @@
 import asyncio
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from navette.viewer.session import Watch
 
 _MAX_QUEUED = 64 * 2**20  # bytes
+
+Offer = tuple[Watch, int, bytes]
+"""A message for the clients of a watch: watch, stamp in ns, payload."""
+
+DeliverOffers = Callable[[Iterable[Offer]], None]
+"""Receives queued messages, oldest first, on the loop's thread."""
 
 
 class OfferQueue:
@@ -18,16 +24,12 @@ class OfferQueue:
     """
 
     def __init__(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        deliver: Callable[[Watch, int, bytes], None],
-        delivered: Callable[[], None],
+        self, loop: asyncio.AbstractEventLoop, *, deliver: DeliverOffers
     ) -> None:
         self._loop = loop
         self._deliver = deliver
-        self._delivered = delivered
         self._lock = threading.Lock()
-        self._queued: deque[tuple[Watch, int, bytes]] = deque()
+        self._queued: deque[Offer] = deque()
         self._size = 0
         self._scheduled = False
 
@@ -47,6 +49,4 @@ class OfferQueue:
             batch, self._queued = self._queued, deque()
             self._size = 0
             self._scheduled = False
-        for offer in batch:
-            self._deliver(*offer)
-        self._delivered()
+        self._deliver(batch)

@@ -1,16 +1,16 @@
 """Clients' requests about the parameters of all nodes, in this and other processes.
 
-All methods belong to the executor's thread; results are passed to the hub through its
-``call``.
+All methods belong to the executor's thread; results are passed to the hub through
+the bridge.
 """
 
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from navette.errors import ParameterError
 from navette.viewer.frames import WireParameter
+from navette.viewer.graph_access import GraphAccess, LocalNode
 from navette.viewer.hub import Hub
 from navette.viewer.parameters import (
     ParameterText,
@@ -20,45 +20,29 @@ from navette.viewer.parameters import (
     value_of,
     wire_name,
 )
-from navette.viewer.remote_parameters import RemoteParameters
-
-Call = Callable[..., None]
-"""Runs a method of the hub on the socket thread."""
-
-
-class LocalNode(Protocol):
-    """The part of a node of this process that is used here."""
-
-    def get_fully_qualified_name(self) -> str: ...
-    def has_parameter(self, name: str) -> bool: ...
-    def get_parameter(self, name: str) -> Any: ...
-    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Any]: ...
-    def describe_parameters(self, names: list[str]) -> list[Any]: ...
-    def set_parameters(self, parameters: list[Any]) -> Sequence[Any]: ...
+from navette.viewer.remote_parameters import OnEnd, RemoteParameters
+from navette.viewer.thread_bridge import ThreadBridge
 
 
 class ParameterRequests:
     """Executes clients' requests about parameters.
 
     Args:
-        nodes: returns the nodes of this process.
         remote: parameters of the nodes of other processes.
-        parameter: creates a parameter from name and value; may raise ParameterError.
     """
 
     def __init__(
         self,
         hub: Hub,
-        call: Call,
-        nodes: Callable[[], Iterable[LocalNode]],
+        bridge: ThreadBridge,
+        *,
+        graph: GraphAccess,
         remote: RemoteParameters,
-        parameter: Callable[[str, Any], Any],
     ) -> None:
         self._hub = hub
-        self._call = call
-        self._nodes = nodes
+        self._bridge = bridge
+        self._graph = graph
         self._remote = remote
-        self._parameter = parameter
         #: Requests (client, names, id) that wait for the nodes' responses.
         self._waiting: list[tuple[int, tuple[str, ...], str | None]] = []
 
@@ -71,7 +55,7 @@ class ParameterRequests:
             try:
                 split_name(name)
             except ParameterError as error:
-                self._call(self._hub.send_status, client, str(error))
+                self._bridge.call_hub(self._hub.send_status, client, str(error))
                 break
         self._waiting.append((client, names, request_id))
         if len(self._waiting) == 1:
@@ -82,7 +66,7 @@ class ParameterRequests:
         found = self._all_parameters()
         for client, names, request_id in waiting:
             self._send(client, names, request_id, found)
-            self._call(self._hub.done, client)
+            self._bridge.call_hub(self._hub.done, client)
 
     def set(
         self,
@@ -98,7 +82,7 @@ class ParameterRequests:
             if request_id is not None:
                 names = tuple(parameter.name for parameter in parameters)
                 self._send(client, names, request_id, self._all_parameters())
-            self._call(self._hub.done, client)
+            self._bridge.call_hub(self._hub.done, client)
 
         def one_is_done(name: str, reason: str) -> None:
             nonlocal left
@@ -107,7 +91,7 @@ class ParameterRequests:
                 # The page finds the parameter by the first words.
                 is_whole = reason.startswith("parameter ") and name in reason
                 text = reason if is_whole else f"parameter {name!r:.120}: {reason}"
-                self._call(self._hub.send_status, client, text)
+                self._bridge.call_hub(self._hub.send_status, client, text)
             if not left:
                 end()
 
@@ -117,10 +101,10 @@ class ParameterRequests:
             end()
 
     def describe(self, client: int) -> None:
-        texts = [text for node in self._nodes() for text in _texts_of(node)]
+        texts = [text for node in self._graph.local_nodes() for text in _texts_of(node)]
         texts += self._remote.texts.values()
-        self._call(self._hub.set_parameter_texts, texts, client)
-        self._call(self._hub.done, client)
+        self._bridge.call_hub(self._hub.set_parameter_texts, texts, client)
+        self._bridge.call_hub(self._hub.done, client)
 
     def on_event(self, event: Any) -> None:
         """Forward an rcl_interfaces/msg/ParameterEvent to the clients."""
@@ -133,12 +117,12 @@ class ParameterRequests:
             return
         changes = [to_wire(wire_name(event.node, n), value_of(v)) for n, v in values]
         changes += [WireParameter(wire_name(event.node, n), None) for n in deleted]
-        self._call(self._hub.parameters_changed, changes)
+        self._bridge.call_hub(self._hub.parameters_changed, changes)
 
     def _all_parameters(self) -> dict[str, WireParameter]:
         return self._remote.values | {
             parameter.name: parameter
-            for node in self._nodes()
+            for node in self._graph.local_nodes()
             for parameter in _parameters_of(node)
         }
 
@@ -151,9 +135,9 @@ class ParameterRequests:
     ) -> None:
         wanted = [n if n.startswith("/") else f"/{n}" for n in names] or list(found)
         values = [found[name] for name in wanted if name in found]
-        self._call(self._hub.parameters, client, values, request_id)
+        self._bridge.call_hub(self._hub.parameters, client, values, request_id)
 
-    def _set_one(self, wire: WireParameter, done: Callable[[str], None]) -> None:
+    def _set_one(self, wire: WireParameter, done: OnEnd) -> None:
         """Call ``done`` with the reason if the parameter was not set, else with ""."""
         try:
             node_name, name = split_name(wire.name)
@@ -174,12 +158,12 @@ class ParameterRequests:
     def _set_here(self, node: LocalNode, name: str, wire: WireParameter) -> None:
         """Set it; raises ParameterError with the node's reason."""
         value = from_wire(wire, node.get_parameter(name).value)
-        (result,) = node.set_parameters([self._parameter(name, value)])
+        (result,) = node.set_parameters([self._graph.make_parameter(name, value)])
         if not result.successful:
             raise ParameterError(result.reason or "refused")
 
     def _node_here(self, full_name: str) -> LocalNode | None:
-        for node in self._nodes():
+        for node in self._graph.local_nodes():
             if node.get_fully_qualified_name() == full_name:
                 return node
         return None

@@ -2,13 +2,14 @@
 
 import asyncio
 import contextlib
-from collections.abc import Callable
 
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
+from navette.viewer.hub import Hub
 from navette.viewer.session import Session
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.wall_clock import WallClock
 
 _MAX_PENDING = 16  # unfinished requests of one client
 _MAX_UNREAD = 4 * 2**20  # bytes of responses that a client has not received
@@ -19,30 +20,28 @@ _BYTE_BURST, _BYTES_PER_S = 16 * 2**20, 8 * 2**20
 
 
 class Peer:
-    """A client's connection, the frames queued for it and its unfinished requests.
-
-    Args:
-        on_emptied: called when the client has accepted all queued frames.
-    """
+    """A client's connection, the frames queued for it and its unfinished requests."""
 
     def __init__(
         self,
         connection: ServerConnection,
         session: Session,
-        on_emptied: Callable[[], None],
+        *,
+        hub: Hub,
+        clock: WallClock,
     ) -> None:
         self.connection = connection
         self.session = session
-        self._on_emptied = on_emptied
+        self._hub = hub
+        self._clock = clock
         #: Aborted: frames that still arrive are ignored.
         self.gone = False
         self._outbox = session.outbox
         self._answered = asyncio.Event()
         self._filled = asyncio.Event()
-        now_s = self._now_s = asyncio.get_running_loop().time
         self._sending_since_s: float | None = None
-        self._requests = TokenBucket(_REQUESTS_PER_S, _REQUEST_BURST, now_s)
-        self._bytes = TokenBucket(_BYTES_PER_S, _BYTE_BURST, now_s)
+        self._requests = TokenBucket(_REQUESTS_PER_S, _REQUEST_BURST, clock)
+        self._bytes = TokenBucket(_BYTES_PER_S, _BYTE_BURST, clock)
 
     def wake(self) -> None:
         self._filled.set()
@@ -63,7 +62,7 @@ class Peer:
     def is_stalled(self) -> bool:
         """Whether the client has not read what was sent to it for a second."""
         since_s = self._sending_since_s
-        return since_s is not None and self._now_s() - since_s > _STALL_S
+        return since_s is not None and self._clock.now_s - since_s > _STALL_S
 
     async def admit(self, size: int) -> None:
         """Return when the client's next request may be read after one of ``size``.
@@ -90,9 +89,10 @@ class Peer:
                 await self._filled.wait()
                 self._filled.clear()
                 while self._outbox:
-                    self._sending_since_s = self._now_s()
+                    self._sending_since_s = self._clock.now_s
                     await self.connection.send(self._outbox.pop())
                     self._sending_since_s = None
                     self._outbox.sent()
                     self.check_pending()
-                self._on_emptied()
+                if self.session.is_suspended:
+                    self._hub.resume(self.session)

@@ -24,6 +24,14 @@ class PlaybackState:
     speed: float
 
 
+class DisplayClock(Protocol):
+    """The time that clients display: of the recording that is played, else now."""
+
+    @property
+    def now_ns(self) -> int:
+        """Nanoseconds; callable from any thread."""
+
+
 class Playback(Protocol):
     """A recording that is played; only :meth:`state` is callable from any thread."""
 

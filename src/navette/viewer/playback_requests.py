@@ -1,24 +1,26 @@
 """Clients' requests to a recording that is played, and reports of its state.
 
 All methods but :meth:`PlaybackRequests.position_ns` belong to the executor's thread;
-results are passed to the hub through its ``call``.
+results are passed to the hub through the bridge.
 """
 
 from functools import partial
 
 from navette.viewer.frames import ControlPlayback
 from navette.viewer.hub import Hub
-from navette.viewer.parameter_requests import Call
 from navette.viewer.playback import Playback
+from navette.viewer.thread_bridge import ThreadBridge
 
 
 class PlaybackRequests:
     """Executes requests of playback bars; does nothing without a recording."""
 
-    def __init__(self, playback: Playback | None, hub: Hub, call: Call) -> None:
+    def __init__(
+        self, playback: Playback | None, hub: Hub, bridge: ThreadBridge
+    ) -> None:
         self._playback = playback
         self._hub = hub
-        self._call = call
+        self._bridge = bridge
         self._request_id = ""  # of the request that the next report answers
 
     def begin(self) -> None:
@@ -52,4 +54,4 @@ class PlaybackRequests:
             report = partial(
                 self._hub.set_playback, did_seek=jumped, request_id=request_id
             )
-            self._call(report, self._playback.state())
+            self._bridge.call_hub(report, self._playback.state())

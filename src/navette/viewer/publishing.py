@@ -2,7 +2,6 @@
 
 import functools
 import json
-from collections.abc import Callable
 from typing import Any
 
 from navette.errors import DecodeError
@@ -16,7 +15,9 @@ from navette.msgs import (
     serialize,
 )
 from navette.viewer.frames import ClientChannel, check_containers
+from navette.viewer.graph_access import GraphAccess
 
+_DEPTH = 10  # messages, as in rclpy's default profile
 _MAX_CONTAINERS = 10_000  # lists and objects of a JSON message
 
 
@@ -24,28 +25,21 @@ class ClientPublishers:
     """The publishers that clients opened, by client and the client's channel id.
 
     All methods raise NavetteError for types, topics and data that cannot be published.
-
-    Args:
-        create: creates a publisher for a type name and a topic.
-        destroy: destroys a publisher.
     """
 
-    def __init__(
-        self,
-        create: Callable[[str, str], Any],
-        destroy: Callable[[Any], object],
-    ) -> None:
-        self._create, self._destroy = create, destroy
+    def __init__(self, graph: GraphAccess) -> None:
+        self._graph = graph
         self._opened: dict[tuple[int, int], tuple[str, Any]] = {}
 
     def open(self, client: int, channel: ClientChannel) -> None:
-        publisher = self._create(channel.type_name, channel.topic)
+        interface = get_interface(channel.type_name)
+        publisher = self._graph.create_publisher(interface, channel.topic, _DEPTH)
         self._opened[client, channel.id] = channel.encoding, publisher
 
     def close(self, client: int, channel_id: int) -> None:
         opened = self._opened.pop((client, channel_id), None)
         if opened is not None:
-            self._destroy(opened[1])
+            self._graph.destroy_publisher(opened[1])
 
     def publish(self, client: int, channel_id: int, data: bytes) -> None:
         opened = self._opened.get((client, channel_id))

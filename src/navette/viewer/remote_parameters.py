@@ -11,6 +11,8 @@ from typing import Any
 
 from navette.errors import NavetteError
 from navette.viewer.frames import WireParameter
+from navette.viewer.graph_access import GraphAccess
+from navette.viewer.hub import Hub
 from navette.viewer.parameters import (
     ParameterText,
     from_wire,
@@ -20,6 +22,8 @@ from navette.viewer.parameters import (
     wire_name,
 )
 from navette.viewer.service_calls import OnResponse, ServiceCalls
+from navette.viewer.thread_bridge import ThreadBridge
+from navette.viewer.wall_clock import WallClock
 
 LIST = "rcl_interfaces/srv/ListParameters"
 _GET = "rcl_interfaces/srv/GetParameters"
@@ -32,8 +36,8 @@ _MAX_VALUES = 10_000
 _TIMEOUT_S = 2.0  # longer than the default: a node may be busy
 _RETRY_S = 5.0  # until a node that did not respond is called again
 
-Encode = Callable[[str, Any], Any]
-"""Encodes name and value as rcl_interfaces/msg/Parameter; may raise NavetteError."""
+OnEnd = Callable[[str], None]
+"""Called when a request has ended, with the reason of the failure or ""."""
 
 
 @dataclass
@@ -43,32 +47,29 @@ class _Remote:
     gid: bytes
     is_known: bool = False
     requested_s: float | None = None
-    waiting: list[Callable[[str], None]] = field(default_factory=list)
+    waiting: list[OnEnd] = field(default_factory=list)
 
 
 class RemoteParameters:
     """Cache of the parameters of nodes of other processes.
 
-    Args:
-        encode: creates the message of a value.
-        now_s: monotonic wall time.
-        changed: called with values that are new, changed or (None) deleted.
-        described: called with new descriptions.
+    The hub receives values that are new, changed or (None) deleted, and descriptions.
     """
 
     def __init__(
         self,
+        hub: Hub,
+        bridge: ThreadBridge,
+        *,
+        graph: GraphAccess,
         service_calls: ServiceCalls,
-        encode: Encode,
-        now_s: Callable[[], float],
-        changed: Callable[[list[WireParameter]], None],
-        described: Callable[[list[ParameterText]], None],
+        clock: WallClock,
     ) -> None:
+        self._hub = hub
+        self._bridge = bridge
+        self._graph = graph
         self._service_calls = service_calls
-        self._encode = encode
-        self._now_s = now_s
-        self._changed = changed
-        self._described = described
+        self._clock = clock
         self._nodes: dict[str, _Remote] = {}
         #: Values by full name; includes nodes that only published events.
         self.values: dict[str, WireParameter] = {}
@@ -106,7 +107,7 @@ class RemoteParameters:
         ``done`` is called when all of them have responded or failed; without it, nodes
         that failed to respond a moment ago are skipped.
         """
-        now_s = self._now_s()
+        now_s = self._clock.now_s
         unknown = [
             name
             for name, remote in self._nodes.items()
@@ -130,13 +131,13 @@ class RemoteParameters:
         if not unknown and done is not None:
             done()
 
-    def _fetch(self, node: str, done: Callable[[str], None]) -> None:
+    def _fetch(self, node: str, done: OnEnd) -> None:
         """Call ``done`` with the reason of the failure, or with ""."""
         remote = self._nodes[node]
         remote.waiting.append(done)
         if len(remote.waiting) > 1:  # already requested
             return
-        remote.requested_s = self._now_s()
+        remote.requested_s = self._clock.now_s
 
         def listed(response: Any, reason: str) -> None:
             if self._nodes.get(node) is not remote:
@@ -165,7 +166,7 @@ class RemoteParameters:
                 found = zip(names, response.descriptors, strict=False)
                 texts = [ParameterText.of(wire_name(node, n), d) for n, d in found]
                 self.texts |= {text.name: text for text in texts}
-                self._described(texts)
+                self._bridge.call_hub(self._hub.set_parameter_texts, texts)
 
         wanted = {"names": names}
         self._call(f"{node}/describe_parameters", _DESCRIBE, wanted, described)
@@ -185,12 +186,15 @@ class RemoteParameters:
             self.values.pop(wire.name, None)
         self._changed(gone)
 
+    def _changed(self, values: list[WireParameter]) -> None:
+        self._bridge.call_hub(self._hub.parameters_changed, values)
+
     # -- setting ---------------------------------------------------------------
 
     def serves(self, node: str) -> bool:
         return node in self._nodes
 
-    def set(self, wire: WireParameter, done: Callable[[str], None]) -> None:
+    def set(self, wire: WireParameter, done: OnEnd) -> None:
         """Set one; calls ``done`` with the reason of a refusal, else with ""."""
         node, _ = split_name(wire.name)
         known = self.values.get(wire.name)
@@ -199,16 +203,14 @@ class RemoteParameters:
         else:
             self._send(wire, done, "")
 
-    def _send(
-        self, wire: WireParameter, done: Callable[[str], None], failure: str
-    ) -> None:
+    def _send(self, wire: WireParameter, done: OnEnd, failure: str) -> None:
         node, name = split_name(wire.name)
         if failure:
             done(failure)
             return
         try:
             value = from_wire(wire, _current(self.values.get(wire.name)))
-            message = self._encode(name, value)
+            message = self._graph.make_parameter(name, value).to_parameter_msg()
         except NavetteError as error:
             done(str(error))
             return

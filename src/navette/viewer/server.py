@@ -10,9 +10,8 @@ import logging
 import socket
 import ssl
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
-from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -29,12 +28,15 @@ from navette.viewer.hub import Hub
 from navette.viewer.listening import Listeners, port_of
 from navette.viewer.liveness import PERIOD_S
 from navette.viewer.login import Visitor
-from navette.viewer.offers import OfferQueue
+from navette.viewer.node_monitor import NodeMonitor
+from navette.viewer.offers import Offer, OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
 from navette.viewer.peer_user import user_of
-from navette.viewer.session import Session, Watch
+from navette.viewer.playback import DisplayClock
+from navette.viewer.session import Watch
 from navette.viewer.throttled_selector import ThrottledSelector
+from navette.viewer.wall_clock import WallClock
 from navette.viewer.web import HttpResponse, refuse
 
 # Connections that open, close or fail are normal; only errors of the server are logged.
@@ -56,9 +58,8 @@ class ViewerServer:
 
     Args:
         listeners: listening sockets, which are closed with the server.
-        now_ns: the program's time; called on the socket thread.
-        wall_s: monotonic wall time.
-        on_period: called on the socket thread every ``PERIOD_S`` of wall time.
+        time: the time that clients display.
+        monitor: checks the nodes every ``PERIOD_S`` of wall time.
     """
 
     def __init__(
@@ -68,9 +69,9 @@ class ViewerServer:
         *,
         listeners: Listeners,
         tls: ssl.SSLContext | None = None,
-        now_ns: Callable[[], int],
-        wall_s: Callable[[], float],
-        on_period: Callable[[], None],
+        time: DisplayClock,
+        clock: WallClock,
+        monitor: NodeMonitor,
         time_rate_hz: float,
         max_clients: int,
     ) -> None:
@@ -79,19 +80,20 @@ class ViewerServer:
         self._tls = tls
         self._listeners = listeners
         self.port = port_of(listeners)
-        self._now_ns = now_ns
-        self._on_period = on_period
+        self._time = time
+        self._clock = clock
+        self._monitor = monitor
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
         self._loop = asyncio.SelectorEventLoop(
-            ThrottledSelector(_WORK_SHARE, _WORK_BURST_S, wall_s)
+            ThrottledSelector(_WORK_SHARE, _WORK_BURST_S, clock)
         )
         self._thread = threading.Thread(
             target=self._run, name="navette-viewer", daemon=True
         )
         self._started: Future[None] = Future()
         self._stop = asyncio.Event()
-        self._offers = OfferQueue(self._loop, self._hub.message, self._wake_clients)
+        self._offers = OfferQueue(self._loop, deliver=self._deliver)
         self._peers: set[Peer] = set()
 
     # -- any thread ------------------------------------------------------------
@@ -144,7 +146,7 @@ class ViewerServer:
 
     async def _serve(self) -> None:
         limit = ConnectionLimit(self._max_clients + _MAX_OPENING)
-        connection = bounded_by(limit)
+        connection = bounded_by(limit, self._clock)
         servers = [await self._accept(each, connection) for each in self._listeners]
         self._started.set_result(None)
         self._tick()
@@ -212,7 +214,7 @@ class ViewerServer:
 
     async def _client(self, connection: ServerConnection) -> None:
         session = self._hub.join(Outbox())
-        peer = Peer(connection, session, partial(self._resume, session))
+        peer = Peer(connection, session, hub=self._hub, clock=self._clock)
         self._peers.add(peer)
         peer.wake()
         try:
@@ -240,9 +242,10 @@ class ViewerServer:
         for peer in self._peers:
             peer.check_pending()
 
-    def _resume(self, session: Session) -> None:
-        if session.is_suspended:
-            self._hub.resume(session)
+    def _deliver(self, offers: Iterable[Offer]) -> None:
+        for watch, stamp_ns, payload in offers:
+            self._hub.message(watch, stamp_ns, payload)
+        self._wake_clients()
 
     def _wake_clients(self) -> None:
         for peer in self._peers:
@@ -250,13 +253,13 @@ class ViewerServer:
 
     def _tick(self) -> None:
         if self._peers:
-            self._hub.set_now(self._now_ns())
+            self._hub.set_now(self._time.now_ns)
             self._wake_clients()
         if not self._stop.is_set():
             self._loop.call_later(self._tick_s, self._tick)
 
     def _run_period(self) -> None:
-        self._on_period()
+        self._monitor.on_period()
         self._hub.end_period()
         for peer in self._peers:
             if peer.is_stalled:

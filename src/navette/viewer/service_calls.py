@@ -6,10 +6,12 @@ No method blocks: a call ends with a response, or with the reason why none came 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from navette.errors import NavetteError
-from navette.msgs import Message
+from navette.msgs import Message, get_interface
+from navette.viewer.graph_access import GraphAccess, ServiceClient
+from navette.viewer.wall_clock import WallClock
 
 TIMEOUT_S = 1.0
 
@@ -17,17 +19,7 @@ OnResponse = Callable[[Any, str], None]
 """Called with the response and "", or with None and the reason of the failure."""
 
 
-class ServiceClient(Protocol):
-    """The part of a service client that is used here."""
-
-    @property
-    def srv_type(self) -> Any: ...
-    def call_async(self, request: Any) -> Any: ...
-    def remove_pending_request(self, future: Any) -> None: ...
-    def destroy(self) -> None: ...
-
-
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class _PendingCall:
     service: str
     future: Any
@@ -40,15 +32,13 @@ class ServiceCalls:
     """Pending calls and the clients that they use; belongs to the executor's thread.
 
     Args:
-        connect: creates a client for a service name and a type name.
-        now_s: monotonic wall time; a frozen peer is frozen in real time.
+        graph: creates the clients.
+        clock: wall time; a frozen peer is frozen in real time.
     """
 
-    def __init__(
-        self, connect: Callable[[str, str], ServiceClient], now_s: Callable[[], float]
-    ) -> None:
-        self._connect = connect
-        self._now_s = now_s
+    def __init__(self, graph: GraphAccess, clock: WallClock) -> None:
+        self._graph = graph
+        self._clock = clock
         self._clients: dict[str, ServiceClient] = {}
         self._retained: set[str] = set()
         self._pending: list[_PendingCall] = []
@@ -74,7 +64,9 @@ class ServiceCalls:
         try:
             client = self._clients.get(service)
             if client is None:
-                client = self._clients[service] = self._connect(service, type_name)
+                interface = get_interface(type_name)
+                client = self._graph.create_client(interface, service)
+                self._clients[service] = client
             if isinstance(request, dict):
                 request = client.srv_type.Request(**request)
             future = client.call_async(request)
@@ -82,14 +74,19 @@ class ServiceCalls:
             self._destroy_unused(service)
             on_response(None, str(error))
             return
-        deadline_s = self._now_s() + timeout_s
-        call = _PendingCall(service, future, timeout_s, deadline_s, on_response)
+        call = _PendingCall(
+            service=service,
+            future=future,
+            timeout_s=timeout_s,
+            deadline_s=self._clock.now_s + timeout_s,
+            on_response=on_response,
+        )
         self._pending.append(call)
         future.add_done_callback(partial(self._on_done, call))
 
     def expire(self) -> None:
         """End the calls whose timeout has passed; call this a few times a second."""
-        now_s = self._now_s()
+        now_s = self._clock.now_s
         for call in [each for each in self._pending if each.deadline_s < now_s]:
             client = self._clients.get(call.service)
             if client is not None:

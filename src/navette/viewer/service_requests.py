@@ -8,11 +8,11 @@ from typing import Any
 from navette.errors import NavetteError
 from navette.msgs import get_interface, serialize, to_dict
 from navette.viewer.hub import Hub
-from navette.viewer.parameter_requests import Call
 from navette.viewer.publishing import decode_message
 from navette.viewer.replies import OfferedService
 from navette.viewer.service_calls import ServiceCalls
 from navette.viewer.session import CallId
+from navette.viewer.thread_bridge import ThreadBridge
 
 TIMEOUT_S = 30.0  # a service may compute or move something before it responds
 
@@ -20,8 +20,10 @@ TIMEOUT_S = 30.0  # a service may compute or move something before it responds
 class ServiceRequests:
     """Calls services for clients; each call is answered once, in its own encoding."""
 
-    def __init__(self, hub: Hub, call: Call, service_calls: ServiceCalls) -> None:
-        self._hub, self._call, self._service_calls = hub, call, service_calls
+    def __init__(
+        self, hub: Hub, bridge: ThreadBridge, service_calls: ServiceCalls
+    ) -> None:
+        self._hub, self._bridge, self._service_calls = hub, bridge, service_calls
 
     def call(
         self, call_id: CallId, service: OfferedService, encoding: str, data: bytes
@@ -48,10 +50,10 @@ class ServiceRequests:
             self._fail(call_id, f"{name}: {reason}")
             return
         data = serialize(response) if encoding == "cdr" else _json_of(response)
-        self._call(self._hub.service_responded, call_id, encoding, data)
+        self._bridge.call_hub(self._hub.service_responded, call_id, encoding, data)
 
     def _fail(self, call_id: CallId, reason: str) -> None:
-        self._call(self._hub.service_failed, call_id, reason)
+        self._bridge.call_hub(self._hub.service_failed, call_id, reason)
 
 
 def _json_of(response: Any) -> bytes:

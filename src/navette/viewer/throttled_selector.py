@@ -6,12 +6,10 @@ their sum, whatever the work is (handshakes, pings, parsing, encryption).
 """
 
 import selectors
-import threading
-import time
-from collections.abc import Callable
 from typing import Any
 
 from navette.viewer.token_bucket import TokenBucket
+from navette.viewer.wall_clock import WallClock
 from navette.viewer.work_time import WorkTime
 
 
@@ -24,29 +22,19 @@ class ThrottledSelector(selectors.DefaultSelector):
     Args:
         share: seconds of work per second.
         burst_s: work that may be done at once.
-        now_s: monotonic wall time.
-        cpu_s: CPU time of the calling thread.
     """
 
-    def __init__(
-        self,
-        share: float,
-        burst_s: float,
-        now_s: Callable[[], float],
-        *,
-        cpu_s: Callable[[], float] = time.thread_time,
-        sleep: Callable[[float], object] | None = None,
-    ) -> None:
+    def __init__(self, share: float, burst_s: float, clock: WallClock) -> None:
         super().__init__()
-        self._bucket = TokenBucket(share, burst_s, now_s)
-        self._work = WorkTime(now_s, cpu_s)  # begun in the thread whose time counts
-        self._sleep = sleep or threading.Event().wait
+        self._bucket = TokenBucket(share, burst_s, clock)
+        self._work = WorkTime(clock)  # begun in the thread whose time counts
+        self._clock = clock
 
     def select(self, timeout: float | None = None) -> Any:
         self._bucket.take(self._work.elapsed_s())
         wait_s = self._bucket.wait_s()
         if wait_s:
-            self._sleep(wait_s)
+            self._clock.sleep(wait_s)
             timeout = 0.0
         events = super().select(timeout)
         self._work.begin()

@@ -1,6 +1,6 @@
 """Token bucket: a rate limit that permits bursts."""
 
-from collections.abc import Callable
+from navette.viewer.wall_clock import WallClock
 
 
 class TokenBucket:
@@ -12,15 +12,12 @@ class TokenBucket:
     Args:
         rate_per_s: tokens that are added per second.
         burst: maximum number of tokens, and their number at the start.
-        now_s: monotonic time.
     """
 
-    def __init__(
-        self, rate_per_s: float, burst: float, now_s: Callable[[], float]
-    ) -> None:
-        self._rate_per_s, self._burst, self._now_s = rate_per_s, burst, now_s
+    def __init__(self, rate_per_s: float, burst: float, clock: WallClock) -> None:
+        self._rate_per_s, self._burst, self._clock = rate_per_s, burst, clock
         self._tokens = burst
-        self._refilled_s = now_s()
+        self._refilled_s = clock.now_s
 
     def take(self, count: float) -> None:
         """Take tokens, also more than there are."""
@@ -46,7 +43,7 @@ class TokenBucket:
         return self._tokens >= self._burst
 
     def _refill(self) -> None:
-        now_s = self._now_s()
+        now_s = self._clock.now_s
         added = (now_s - self._refilled_s) * self._rate_per_s
         self._tokens = min(self._burst, self._tokens + added)
         self._refilled_s = now_s

@@ -53,5 +53,10 @@ def graph_of(
     return ConnectionGraph(_sorted(published), _sorted(subscribed), _sorted(served))
 
 
+def is_hidden(name: str) -> bool:
+    """Whether a part of a name begins with ``_``, as in the topics of actions."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
 def _sorted(names: dict[str, set[str]]) -> dict[str, tuple[str, ...]]:
     return {topic: tuple(sorted(nodes)) for topic, nodes in names.items()}

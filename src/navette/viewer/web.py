@@ -2,9 +2,9 @@
 
 import ipaddress
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 from urllib.parse import urlsplit
 
 from navette.viewer.page_files import PageFile
@@ -92,6 +92,16 @@ def _is_address(name: str) -> bool:
     return True
 
 
+class SiteDocuments(Protocol):
+    """The documents of the site that change; requested on the socket thread."""
+
+    def layout(self) -> Mapping[str, Any]:
+        """Return ``/layout.json``, a layout of the Foxglove app."""
+
+    def health(self) -> Mapping[str, Any]:
+        """Return ``/health``: status, version and counts."""
+
+
 class Site:
     """Serves the page's files, ``/layout.json`` and ``/health``; 404 for other paths.
 
@@ -99,15 +109,9 @@ class Site:
         files: the page by path.
     """
 
-    def __init__(
-        self,
-        files: Mapping[str, PageFile],
-        layout: Callable[[], Mapping[str, Any]],
-        health: Callable[[], Mapping[str, Any]],
-    ) -> None:
+    def __init__(self, files: Mapping[str, PageFile], documents: SiteDocuments) -> None:
         self._files = files
-        self._layout = layout
-        self._health = health
+        self._documents = documents
 
     def is_public(self, target: str) -> bool:
         """Whether a path is the same for every program: a file of the page."""
@@ -132,10 +136,10 @@ class Site:
         if path == "/layout.json":
             download = 'attachment; filename="navette-layout.json"'
             headers = {"Content-Disposition": download}
-            body = json.dumps(self._layout(), indent=2).encode()
+            body = json.dumps(self._documents.layout(), indent=2).encode()
             return HttpResponse(200, "application/json", body, headers)
         if path == "/health":
-            body = json.dumps(self._health()).encode()
+            body = json.dumps(self._documents.health()).encode()
             return HttpResponse(200, "application/json", body)
         return refuse(404, f"nothing at {path!r:.120}; known: /, /layout.json, /health")
 

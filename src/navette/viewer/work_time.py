@@ -1,6 +1,6 @@
 """Work of a thread, for limits on its share."""
 
-from collections.abc import Callable
+from navette.viewer.wall_clock import WallClock
 
 _CPU_WEIGHT = 3.0  # the most that a second of CPU time counts
 
@@ -12,22 +12,19 @@ class WorkTime:
     on a machine that is short of CPU time a thread takes more of what the process
     receives. A thread that only waits for the interpreter delays no node, and an
     operator's command must not wait for a debt of others.
-
-    Args:
-        now_s: monotonic wall time.
-        cpu_s: CPU time of the calling thread.
     """
 
-    def __init__(self, now_s: Callable[[], float], cpu_s: Callable[[], float]) -> None:
-        self._now_s, self._cpu_s = now_s, cpu_s
+    def __init__(self, clock: WallClock) -> None:
+        self._clock = clock
         self._begin_s: tuple[float, float] | None = None
 
     def begin(self) -> None:
-        self._begin_s = self._now_s(), self._cpu_s()
+        self._begin_s = self._clock.now_s, self._clock.thread_cpu_s
 
     def elapsed_s(self) -> float:
         """Return the work since :meth:`begin`; 0 before the first."""
         if self._begin_s is None:
             return 0.0
-        wall_s = self._now_s() - self._begin_s[0]
-        return min(wall_s, _CPU_WEIGHT * (self._cpu_s() - self._begin_s[1]))
+        wall_s = self._clock.now_s - self._begin_s[0]
+        cpu_s = self._clock.thread_cpu_s - self._begin_s[1]
+        return min(wall_s, _CPU_WEIGHT * cpu_s)

@@ -1,25 +1,17 @@
 """Fakes of the services of other nodes; the test decides when they respond."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
+from viewer_fakes import FakeBridge, FakeClock
+
 from navette.errors import InvalidValueError
-from navette.msgs import get_interface
 from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.runtime import Future, Parameter
 from navette.viewer.service_calls import ServiceCalls
 
 ServiceResponse = Callable[[Any], Any]
-
-
-class Clock:
-    """Wall time, set by the test."""
-
-    def __init__(self) -> None:
-        self.now_s = 100.0
-
-    def __call__(self) -> float:
-        return self.now_s
 
 
 class Call:
@@ -35,17 +27,38 @@ class World:
     """Services by name; one without an answer never responds."""
 
     def __init__(self) -> None:
-        self.clock = Clock()
-        self.service_calls = ServiceCalls(self.connect, self.clock)
+        self.clock = FakeClock()
+        self.bridge = FakeBridge()
+        self.nodes_here = ["/viewer"]
+        self.nodes_elsewhere = ["/far"]
+        self.service_calls = ServiceCalls(self, self.clock)
         self.answers: dict[str, ServiceResponse] = {}
         self.calls: list[Call] = []
         self.clients: list[str] = []
 
-    def connect(self, service: str, type_name: str) -> "_Client":
+    def create_client(self, srv_type: Any, service: str) -> "_Client":
         if service.startswith("/bad/"):
             raise InvalidValueError(f"service {service}: is of another type")
         self.clients.append(service)
-        return _Client(self, service, get_interface(type_name))
+        return _Client(self, service, srv_type)
+
+    def create_publisher(self, msg_type: Any, topic: str, _depth: int) -> Any:
+        raise InvalidValueError(f"topic {topic}: this fake publishes nothing")
+
+    def destroy_publisher(self, publisher: Any) -> bool:
+        return False
+
+    def local_nodes(self) -> list[Any]:
+        return [
+            SimpleNamespace(get_fully_qualified_name=lambda name=name: name)
+            for name in self.nodes_here
+        ]
+
+    def node_names(self) -> set[str]:
+        return {*self.nodes_here, *self.nodes_elsewhere}
+
+    def make_parameter(self, name: str, value: Any) -> Parameter[Any]:
+        return Parameter(name, value=value)
 
     def asked(self) -> list[str]:
         """Return the services called since the last call."""

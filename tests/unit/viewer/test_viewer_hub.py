@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from viewer_fakes import RecordingProgram, sent
+from viewer_fakes import DirectCommands, RecordingProgram, sent
 
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
@@ -28,6 +28,7 @@ class Bench:
         self.program = RecordingProgram()
         self.hub = Hub(
             self.program,
+            DirectCommands(),
             name="test",
             session_id="1",
             assets=AssetFolders({"navette": folder}),

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from viewer_fakes import FakeClock, FakeDocuments
 from viewer_harness import Client, Program
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 
@@ -35,15 +36,8 @@ LAN = Visitor("192.168.1.9")
 KEY = Visitor("192.168.1.9", has_certificate=True)
 
 
-class Time:
-    now_s = 0.0
-
-    def __call__(self) -> float:
-        return self.now_s
-
-
 def status(visitor: Visitor, token: str | None, login: Login | None = None) -> int:
-    refused = (login or Login([TOKEN], Time())).refusal(visitor, token)
+    refused = (login or Login([TOKEN], FakeClock())).refusal(visitor, token)
     return 200 if refused is None else refused.status
 
 
@@ -71,7 +65,7 @@ def test_other_users_and_machines_need_the_token(
 
 
 def test_wrong_tokens_are_limited_by_address() -> None:
-    time = Time()
+    time = FakeClock()
     login = Login([TOKEN], time)
     answers = [status(LAN, f"guess {n}", login) for n in range(15)]
     assert answers == [401] * 10 + [429] * 5
@@ -82,13 +76,13 @@ def test_wrong_tokens_are_limited_by_address() -> None:
 
 
 def test_missing_tokens_are_not_counted_as_wrong() -> None:
-    login = Login([TOKEN], Time())
+    login = Login([TOKEN], FakeClock())
     assert [status(LAN, None, login) for _ in range(50)] == [401] * 50
     assert status(LAN, TOKEN, login) == 200
 
 
 def test_the_failures_of_many_addresses_take_bounded_memory() -> None:
-    login = Login([TOKEN], Time())
+    login = Login([TOKEN], FakeClock())
     for number in range(3000):
         login.refusal(Visitor(f"10.0.{number >> 8}.{number & 255}"), "guess")
     assert len(login._failures) == 1000
@@ -129,13 +123,28 @@ def test_tokens_are_in_the_address_or_a_header(
 PAGE = PageFile("text/html", b"page", b"page")
 
 
+class Notes:
+    """Notes refused pages and users."""
+
+    def __init__(self, notes: list[str]) -> None:
+        self._notes = notes
+
+    def image_refused(self, reason: str) -> None:
+        raise AssertionError(reason)
+
+    def origin_refused(self, reason: str) -> None:
+        self._notes.append(reason)
+
+    def user_refused(self) -> None:
+        self._notes.append("denied")
+
+
 def gate(notes: list[str]) -> Gate:
     return Gate(
         AccessPolicy("127.0.0.1", ("https://app.foxglove.dev",)),
-        Login([TOKEN], Time()),
-        Site({"/": PAGE, "/a.js": PAGE}, dict, lambda: {"status": "ok"}),
-        on_refused=notes.append,
-        on_denied=lambda: notes.append("denied"),
+        Login([TOKEN], FakeClock()),
+        Site({"/": PAGE, "/a.js": PAGE}, FakeDocuments()),
+        problems=Notes(notes),
     )
 
 
@@ -260,7 +269,7 @@ def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def access(environment: dict[str, str], **params: Any) -> Access:
-    return Access.of(ViewerParams(**params), environment, Time())
+    return Access.of(ViewerParams(**params), environment, FakeClock())
 
 
 def test_other_machines_need_encryption_or_a_plain_permission(keys: Path) -> None:

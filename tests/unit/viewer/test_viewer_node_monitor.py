@@ -1,11 +1,10 @@
 """Periodic node checks: only with interested clients, also when nodes block."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
-from remote_fakes import World, encoded
-from viewer_fakes import RecordingProgram, sent
+from remote_fakes import World
+from viewer_fakes import DirectCommands, RecordingProgram, sent
 
 from navette.viewer.hub import Hub
 from navette.viewer.liveness import PERIOD_S
@@ -19,19 +18,25 @@ class Bench(World):
 
     def __init__(self) -> None:
         super().__init__()
-        self.hub = Hub(RecordingProgram(), name="test", session_id="1")
-        self.events: list[Callable[[], None]] = []
-        remote = RemoteParameters(
-            self.service_calls, encoded, self.clock, lambda _: None, lambda _: None
+        self.hub = Hub(
+            RecordingProgram(), DirectCommands(), name="test", session_id="1"
         )
+        self.events = self.bridge.soon
+        remote = RemoteParameters(
+            self.hub,
+            self.bridge,
+            graph=self,
+            service_calls=self.service_calls,
+            clock=self.clock,
+        )
+        remote.set_nodes({"/far": bytes(16)})
         self.monitor = NodeMonitor(
             self.hub,
-            lambda function, *args: function(*args),
-            lambda function, _: self.events.append(function),
-            lambda: ({"/viewer"}, {"/far": True}),
-            self.service_calls,
-            remote,
-            self.clock,
+            self.bridge,
+            graph=self,
+            service_calls=self.service_calls,
+            remote=remote,
+            clock=self.clock,
         )
         self.session = self.hub.join(Outbox())
         sent(self.session.outbox)
@@ -63,7 +68,7 @@ def test_a_client_receives_reports_until_it_unsubscribes(bench: Bench) -> None:
         ("/far", "alive"),
         ("/viewer", "alive"),
     ]
-    assert bench.asked() == ["/far/get_parameters"]
+    assert bench.asked() == ["/far/list_parameters", "/far/get_parameters"]
     bench.hub.receive(bench.session, '{"op": "unsubscribeNodes"}')
     assert bench.beat() == []
     bench.clock.now_s += 2.0

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from viewer_fakes import RecordingProgram, sent
+from viewer_fakes import DirectCommands, RecordingProgram, sent
 from viewer_harness import Client, Program
 
 from navette.errors import DecodeError, InvalidValueError
@@ -58,7 +58,13 @@ def test_states_have_the_published_form() -> None:
 
 def hub_of(playback_range: tuple[int, int] | None) -> tuple[Hub, RecordingProgram]:
     program = RecordingProgram()
-    hub = Hub(program, name="t", session_id="1", playback_range=playback_range)
+    hub = Hub(
+        program,
+        DirectCommands(),
+        name="t",
+        session_id="1",
+        playback_range=playback_range,
+    )
     return hub, program
 
 

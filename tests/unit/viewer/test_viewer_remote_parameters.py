@@ -30,11 +30,11 @@ class Far(World):
         self.changed: list[WireParameter] = []
         self.texts: list[ParameterText] = []
         self.remote = RemoteParameters(
-            self.service_calls,
-            encoded,
-            self.clock,
-            self.changed.extend,
-            self.texts.extend,
+            self,  # type: ignore[arg-type]
+            self.bridge,
+            graph=self,
+            service_calls=self.service_calls,
+            clock=self.clock,
         )
         self.answers = {
             "/far/list_parameters": self.on_list,
@@ -43,6 +43,12 @@ class Far(World):
             "/far/set_parameters": self.on_set,
         }
         self.remote.set_nodes({"/far": ID})
+
+    def parameters_changed(self, parameters: list[WireParameter]) -> None:
+        self.changed += parameters
+
+    def set_parameter_texts(self, texts: list[ParameterText]) -> None:
+        self.texts += texts
 
     def on_list(self, _request: Any) -> Any:
         return SimpleNamespace(result=SimpleNamespace(names=list(self.have)))

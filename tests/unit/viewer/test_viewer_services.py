@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from viewer_fakes import RecordingProgram, sent
+from viewer_fakes import DirectCommands, RecordingProgram, sent
 from viewer_harness import Client, Program
 
 from navette.msgs import deserialize, serialize
@@ -34,7 +34,7 @@ def program() -> RecordingProgram:
 
 @pytest.fixture
 def hub(program: RecordingProgram) -> Hub:
-    hub = Hub(program, name="test", session_id="1")
+    hub = Hub(program, DirectCommands(), name="test", session_id="1")
     hub.set_services([RESET])
     return hub
 

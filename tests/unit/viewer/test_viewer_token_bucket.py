@@ -5,120 +5,96 @@ from collections.abc import Callable
 from functools import partial
 
 import pytest
+from viewer_fakes import FakeBridge, FakeClock
 
 from navette.viewer.command_queue import CommandQueue
 from navette.viewer.throttled_selector import ThrottledSelector
 from navette.viewer.token_bucket import TokenBucket
 
 
-class Time:
-    """Seconds that advance on request."""
-
-    def __init__(self) -> None:
-        self.now_s = 0.0
-
-    def __call__(self) -> float:
-        return self.now_s
-
-    def advance(self, seconds: float) -> None:
-        self.now_s += seconds
-
-
 @pytest.fixture
-def time() -> Time:
-    return Time()
+def time() -> FakeClock:
+    return FakeClock()
 
 
-def test_a_bucket_permits_a_burst_and_then_its_rate(time: Time) -> None:
+def test_a_bucket_permits_a_burst_and_then_its_rate(time: FakeClock) -> None:
     bucket = TokenBucket(2.0, 5.0, time)
     assert [bucket.try_take(1) for _ in range(6)] == [True] * 5 + [False]
-    time.advance(1.0)
+    time.wait(1.0)
     assert [bucket.try_take(1) for _ in range(3)] == [True, True, False]
-    time.advance(100.0)
+    time.wait(100.0)
     assert bucket.is_full
     assert sum(bucket.try_take(1) for _ in range(10)) == 5
 
 
-def test_a_debt_is_paid_off_at_the_rate(time: Time) -> None:
+def test_a_debt_is_paid_off_at_the_rate(time: FakeClock) -> None:
     bucket = TokenBucket(2.0, 5.0, time)
     bucket.take(9.0)
     assert bucket.wait_s() == 2.0
-    time.advance(1.5)
+    time.wait(1.5)
     assert bucket.wait_s() == 0.5
-    time.advance(1.0)
+    time.wait(1.0)
     assert bucket.wait_s() == 0.0
 
 
-def test_a_thread_that_works_more_than_its_share_sleeps(time: Time) -> None:
+def test_a_thread_that_works_more_than_its_share_sleeps(time: FakeClock) -> None:
     """In any mix of work its sum stays below burst + share * time."""
-    worked, slept = Time(), Time()
-
-    def sleep(seconds: float) -> None:
-        time.advance(seconds)
-        slept.advance(seconds)
 
     def work(selector: ThrottledSelector, seconds: float) -> None:
-        worked.advance(seconds)
-        time.advance(seconds)
+        time.work(seconds)
         selector.select(0.0)
 
-    with ThrottledSelector(0.25, 0.1, time, cpu_s=worked, sleep=sleep) as selector:
+    with ThrottledSelector(0.25, 0.1, time) as selector:
         for work_s in (0.05, 0.02, 1.0, 0.001, 0.3) * 20:
             work(selector, work_s)
-            assert worked.now_s <= 0.1 + 0.25 * time.now_s + 1e-9
-        assert slept.now_s > 0
-    with ThrottledSelector(0.25, 0.1, time, cpu_s=worked, sleep=sleep) as selector:
-        before_s = slept.now_s
+            assert time.thread_cpu_s <= 0.1 + 0.25 * time.now_s + 1e-9
+        assert time.slept_s > 0
+    with ThrottledSelector(0.25, 0.1, time) as selector:
+        before_s = time.slept_s
         work(selector, 0.09)
-        assert slept.now_s == before_s
+        assert time.slept_s == before_s
 
 
 def test_a_thread_that_waits_for_a_core_or_the_interpreter_does_not_sleep(
-    time: Time,
+    time: FakeClock,
 ) -> None:
     """The operator's command behind it must not wait even longer."""
-    worked, sleeps = Time(), list[float]()
-    with ThrottledSelector(
-        0.2, 0.05, time, cpu_s=worked, sleep=sleeps.append
-    ) as selector:
+    with ThrottledSelector(0.2, 0.05, time) as selector:
         for _ in range(100):
-            time.advance(0.3)
-            worked.advance(0.001)
+            time.wait(0.299)
+            time.work(0.001)
             selector.select(0.0)
-    assert sleeps == []
+    assert time.slept_s == 0.0
 
 
 class Executor:
     """Runs scheduled functions one by one, and keeps delayed ones."""
 
-    def __init__(self, time: Time, cpu: Time | None = None) -> None:
-        self.ready: list[Callable[[], None]] = []
-        self.later: list[tuple[float, Callable[[], None]]] = []
-        self.queue = CommandQueue(
-            self.ready.append,
-            lambda s, f: self.later.append((s, f)),
-            time,
-            cpu_s=cpu or time,
-        )
+    def __init__(self, time: FakeClock) -> None:
+        bridge = FakeBridge()
+        self.ready, self.later = bridge.soon, bridge.later
+        self.queue = CommandQueue(bridge, time)
 
     def turn(self) -> None:
         self.ready.pop(0)()
 
-    def rest(self, time: Time) -> float:
+    def rest(self, time: FakeClock) -> float:
         """Let the time pass until the next slice may begin; return how long."""
         [(delay_s, function)] = self.later
         self.later.clear()
-        time.advance(delay_s)
+        time.wait(delay_s)
         function()
         return delay_s
 
 
-def test_commands_of_a_flooding_client_do_not_delay_those_of_others(time: Time) -> None:
+def test_commands_of_a_flooding_client_do_not_delay_those_of_others(
+    time: FakeClock,
+) -> None:
     executor, ran = Executor(time), list[str]()
 
     def command(name: str) -> Callable[[], None]:
         def run() -> None:
-            time.advance(0.0015)
+            time.work(0.0015)
             ran.append(name)
 
         return run
@@ -134,13 +110,13 @@ def test_commands_of_a_flooding_client_do_not_delay_those_of_others(time: Time) 
     assert len(executor.ready) == 1
 
 
-def test_no_two_slices_follow_each_other_directly(time: Time) -> None:
+def test_no_two_slices_follow_each_other_directly(time: FakeClock) -> None:
     """Whatever arrives: the loop's other events have at least half of the time."""
     executor, slices = Executor(time), list[tuple[float, float]]()
 
     def command() -> None:
         begin_s = time.now_s
-        time.advance(0.004)
+        time.work(0.004)
         slices.append((begin_s, time.now_s))
 
     for number in range(20):  # each alone in the queue: it empties every time
@@ -154,44 +130,42 @@ def test_no_two_slices_follow_each_other_directly(time: Time) -> None:
         assert next_s - end_s >= end_s - begin_s - 1e-9
 
 
-def test_a_command_after_a_pause_does_not_wait(time: Time) -> None:
+def test_a_command_after_a_pause_does_not_wait(time: FakeClock) -> None:
     executor = Executor(time)
     for _ in range(100):  # an operator's stick
-        executor.queue.add("driver", partial(time.advance, 0.001))
+        executor.queue.add("driver", partial(time.work, 0.001))
         assert executor.later == []
         executor.turn()
-        time.advance(0.05)
+        time.wait(0.05)
 
 
-def test_commands_use_a_tenth_of_the_executor_at_most(time: Time) -> None:
-    executor = Executor(time)
-    used = Time()
+def test_commands_use_a_tenth_of_the_executor_at_most(time: FakeClock) -> None:
+    executor, used_s = Executor(time), list[float]()
 
     def command() -> None:
-        time.advance(0.01)
-        used.advance(0.01)
+        time.work(0.01)
+        used_s.append(0.01)
 
     for number in range(500):
         executor.queue.add(number % 7, command)
     while executor.ready or executor.later:
         if executor.ready:
             executor.turn()
-            assert used.now_s <= 0.25 + 0.01 + 0.1 * time.now_s + 1e-9
+            assert sum(used_s) <= 0.25 + 0.01 + 0.1 * time.now_s + 1e-9
         else:
             (delay_s, function) = executor.later.pop()
-            time.advance(delay_s)
+            time.wait(delay_s)
             function()
-    assert used.now_s == pytest.approx(5.0)
+    assert sum(used_s) == pytest.approx(5.0)
 
 
-def test_commands_are_not_charged_for_what_other_threads_do(time: Time) -> None:
-    cpu, ran = Time(), list[int]()
-    executor = Executor(time, cpu)
+def test_commands_are_not_charged_for_what_other_threads_do(time: FakeClock) -> None:
+    executor, ran = Executor(time), list[int]()
 
     def command(number: int) -> Callable[[], None]:
         def run() -> None:
-            time.advance(0.2)
-            cpu.advance(0.0001)
+            time.wait(0.2)
+            time.work(0.0001)
             ran.append(number)
 
         return run
@@ -207,7 +181,9 @@ def test_commands_are_not_charged_for_what_other_threads_do(time: Time) -> None:
     assert max(rests_s) == pytest.approx(0.02), "the longest rest, without a debt"
 
 
-def test_commands_of_a_lane_run_in_order_and_replace_their_like(time: Time) -> None:
+def test_commands_of_a_lane_run_in_order_and_replace_their_like(
+    time: FakeClock,
+) -> None:
     executor, ran = Executor(time), list[str]()
     for name, key in (
         ("watch a", "a"),
@@ -227,7 +203,7 @@ def test_commands_of_a_lane_run_in_order_and_replace_their_like(time: Time) -> N
 
 
 def test_commands_that_end_work_run_first_and_replace_their_beginning(
-    time: Time,
+    time: FakeClock,
 ) -> None:
     executor, ran = Executor(time), list[str]()
     for name in ("a", "b", "c"):
