@@ -24,6 +24,7 @@ PAGES = [
         "tutorials/5-map-and-localise.md",
         marks=[pytest.mark.long, pytest.mark.timeout(600)],
     ),
+    pytest.param("howto/launch.md", marks=pytest.mark.long),
     "howto/localise.md",
     "howto/play.md",
 ]

@@ -99,7 +99,7 @@ def peer_config(settings: Settings, zid: str = "") -> zenoh.Config:
     config.insert_json5("transport/link/rx/max_message_size", str(max_size))
     for key, value in settings.overrides:
         _override(config, key, value)
-    return config
+    return _secured(config, settings)
 
 
 def client_config(settings: Settings) -> zenoh.Config:
@@ -120,7 +120,7 @@ def router_config(settings: Settings, endpoint: str) -> zenoh.Config:
     if settings.router_file is None:
         config.insert_json5("listen/endpoints", json.dumps([endpoint]))
         config.insert_json5("connect/endpoints", "[]")
-    return config
+    return _secured(config, settings)
 
 
 def router_endpoints(settings: Settings) -> list[str]:
@@ -151,6 +151,11 @@ def _base(settings: Settings, path: Path | None) -> zenoh.Config:
     elif path is None:
         number = str(_KEEP_ALIVES_BETWEEN_MACHINES)
         config.insert_json5("transport/link/tx/keep_alive", number)
+    return config
+
+
+def _secured(config: zenoh.Config, settings: Settings) -> zenoh.Config:
+    """Add the requirements of ``NAVETTE_SECURITY``, which nothing overrides."""
     if settings.security is not None:
         security = Security(settings.security)
         if security.is_encrypted:
