@@ -41,7 +41,7 @@ describe("the robot", () => {
     connection.send("/odom", odometry(2));
     connection.send("/odom", odometry(3));
     expect(robot.baseIn("odom")?.translation).toEqual([3, 0, 0]);
-    transforms.set({ parent: "odom", child: "base_link", parent_T_child: { translation: [7, 0, 0], rotation: [0, 0, 0, 1] }, stampNs: 5n, isStatic: false });
+    transforms.set({ parent: "odom", child: "base_link", parent_T_child: { translation: [7, 0, 0], rotation: [0, 0, 0, 1] }, stampNs: 5n, source: "tf" });
     connection.send("/odom", odometry(4));
     expect(robot.baseIn("odom")?.translation).toEqual([7, 0, 0]);
   });

@@ -10,10 +10,10 @@ import { covarianceEllipse } from "../src/scene/displays/poses";
 import { convexHull, isInside } from "../src/scene/hull";
 import type { OccupancyGrid, PointCloud2 } from "../src/scene/messages";
 import { pick } from "../src/scene/picking";
-import { rgba } from "../src/scene/primitives";
+import { placeOf, rgba } from "../src/scene/primitives";
 import { unionOf, Viewing } from "../src/scene/viewing";
 import { Theme } from "../src/theme/theme";
-import { IDENTITY } from "../src/transforms/transform";
+import { fromYaw, IDENTITY, yawOf } from "../src/transforms/transform";
 import { TransformTree } from "../src/transforms/transform_tree";
 import { FakeConnection } from "./fake_connection";
 
@@ -66,15 +66,121 @@ describe("displays", () => {
     expect(display("/lidar").status()).toEqual({ level: "empty", text: "no messages yet" });
     connection.send("/lidar", scan);
     expect(display("/lidar").status()).toEqual({ level: "error", text: "no transform from lidar to map" });
-    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1_000_000_000n, source: "tf" });
     expect(display("/lidar").status()).toEqual({ level: "ok", text: "2 of 3 rays hit" });
     connection.topics.set("/lidar", { ...connection.topics.get("/lidar")!, type: "std_msgs/msg/String" });
     expect(display("/lidar").status().text).toBe("wrong type: std_msgs/msg/String");
   });
 
+  describe("of a robot that turns", () => {
+    const RATE = 1.5; // rad/s
+    const wall = { ...scan, ranges: [2, Infinity, Infinity], angle_min: 0 };
+    const at = (seconds: number): { sec: number; nanosec: number } => ({ sec: Math.floor(seconds), nanosec: Math.round((seconds % 1) * 1e9) });
+    const turn = (seconds: number): void =>
+      transforms.set({ parent: "map", child: "lidar", parent_T_child: { translation: [1, 0, 0], rotation: fromYaw(RATE * seconds) }, stampNs: BigInt(Math.round(seconds * 1e9)), source: "tf" });
+    const measure = (seconds: number): void => {
+      connection.nowNs = BigInt(Math.round(seconds * 1e9));
+      connection.send("/lidar", { ...wall, header: { frame_id: "lidar", stamp: at(seconds) } });
+    };
+    /** Bearings in the map of what is drawn. */
+    const drawn = (fixed = "map"): number[] => display("/lidar").parts().map((part) => yawOf(placeOf(part, fixed, transforms)!.rotation));
+    const frame = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+
+    beforeEach(() => connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan"));
+
+    it("draw a scan where the robot was at its stamp, whatever comes later", () => {
+      for (let index = 0; index <= 10; index++) turn(10 + 0.1 * index);
+      measure(10.55); // between two transforms, 0.45 s late
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10.55)))]);
+      for (let index = 1; index <= 300; index++) turn(11 + 0.1 * index); // beyond the history
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10.55)))]);
+      expect(display("/lidar").status().level).toBe("ok");
+    });
+
+    it("see it from a frame that moves as it is now", () => {
+      turn(10);
+      turn(10.2);
+      measure(10.1);
+      expect(drawn("lidar")).toEqual([expect.closeTo(-RATE * 0.1)]);
+    });
+
+    it("hold the newest scan until the transforms reach its stamp", async () => {
+      turn(10);
+      measure(10);
+      measure(10.1);
+      measure(10.2);
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10)))]); // the one before remains
+      turn(10.15);
+      await frame();
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10.1)))]);
+      turn(10.25);
+      await frame();
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10.2)))]);
+    });
+
+    it("draw it at the nearest transform after a second, and report that", () => {
+      turn(10);
+      measure(10.4);
+      expect(display("/lidar").status()).toEqual({ level: "empty", text: "waiting for a transform of lidar" });
+      connection.nowNs = 11_300_000_000n;
+      connection.emit("time", connection.nowNs);
+      expect(drawn()).toEqual([]);
+      connection.nowNs = 11_500_000_000n;
+      connection.emit("time", connection.nowNs);
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10)))]);
+      expect(display("/lidar").status()).toEqual({ level: "late", text: "the newest transform of lidar is 0.4 s older than the message" });
+      measure(13); // too far ahead to wait for
+      expect(display("/lidar").status().text).toContain("3.0 s older");
+      turn(12.5);
+      turn(13.5);
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 13)))]);
+    });
+
+    it("take messages without a stamp at the newest transform", () => {
+      turn(10);
+      measure(0);
+      turn(10.5);
+      expect(drawn()).toEqual([expect.closeTo(yawOf(fromYaw(RATE * 10.5)))]);
+    });
+
+    it("drop what waits when time goes back", async () => {
+      turn(10);
+      measure(10.5);
+      connection.emit("reset", { topics: "all" });
+      turn(11);
+      await frame();
+      expect(drawn()).toEqual([]);
+    });
+
+    it("keep each at its own place for its decay, in another fixed frame too", () => {
+      displays.change(display("/lidar"), { decayS: 10 });
+      for (const seconds of [10, 10.2, 10.4]) {
+        turn(seconds);
+        measure(seconds);
+      }
+      expect(drawn()).toEqual([10, 10.2, 10.4].map((seconds) => expect.closeTo(yawOf(fromYaw(RATE * seconds))) as number));
+      expect(drawn("lidar")).toEqual([-0.4, -0.2, 0].map((seconds) => expect.closeTo(RATE * seconds) as number));
+    });
+
+    it("leave markers where they were, except those that are locked to their frame", () => {
+      connection.addTopic("/markers", "visualization_msgs/msg/MarkerArray");
+      const marker = (id: number, frame_locked: boolean): object => ({
+        header: { frame_id: "lidar", stamp: at(10.1) }, ns: "", id, type: 1, action: 0, pose, scale: { x: 1, y: 1, z: 1 },
+        color: { r: 1, g: 0, b: 0, a: 1 }, lifetime: { sec: 0, nanosec: 0 }, frame_locked, points: [], colors: [], text: "", mesh_resource: "",
+      });
+      turn(10);
+      turn(10.2);
+      connection.send("/markers", { markers: [marker(1, false), marker(2, true), marker(3, false)] });
+      turn(10.4);
+      const parts = display("/markers").parts();
+      expect(parts.map(({ primitives }) => primitives.length)).toEqual([2, 1]);
+      expect(parts.map((part) => yawOf(placeOf(part, "map", transforms)!.rotation))).toEqual([10.1, 10.4].map((seconds) => expect.closeTo(yawOf(fromYaw(RATE * seconds))) as number));
+    });
+  });
+
   it("keep messages where they were for their decay", () => {
     connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
-    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1_000_000_000n, source: "tf" });
     displays.change(display("/lidar"), { decayS: 10 });
     for (let index = 0; index < 3; index++) {
       connection.send("/lidar", scan);
@@ -85,7 +191,7 @@ describe("displays", () => {
 
   it("keep a bounded number of points", () => {
     connection.addTopic("/points", "sensor_msgs/msg/PointCloud2");
-    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1_000_000_000n, source: "tf" });
     displays.change(display("/points"), { isVisible: true, decayS: 60 });
     const count = 200_000;
     const cloud: PointCloud2 = {
@@ -112,7 +218,7 @@ describe("displays", () => {
   it("pick the topmost first", () => {
     connection.addTopic("/map", "nav_msgs/msg/OccupancyGrid");
     connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
-    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1n, isStatic: false });
+    transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1_000_000_000n, source: "tf" });
     connection.send("/map", grid(4, [0, 0, 100, -1]));
     connection.send("/lidar", scan);
     const items = displays.all.flatMap((each) => each.parts().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 })));

@@ -2,6 +2,7 @@
 
 import "./behavior_tree.css";
 import type { Dispose } from "../connection/connection";
+import { nanosecondsOf, type Stamp } from "../transforms/stamp";
 import { h } from "../ui/dom";
 import { nextFrame } from "../ui/frames";
 import { treeLine, type TreeStatus } from "./behavior_tree_text";
@@ -14,7 +15,7 @@ const NAV2: Readonly<Record<string, TreeStatus>> = { RUNNING: "running", SUCCESS
 const MOST_CHANGES = 100;
 
 interface TreeLog {
-  timestamp: { sec: number; nanosec: number };
+  timestamp: Stamp;
   event_log: { node_name: string; previous_status: string; current_status: string }[];
 }
 
@@ -64,7 +65,7 @@ class BehaviorTreePanel implements PanelInstance {
   }
 
   #note({ timestamp, event_log: events }: TreeLog): void {
-    const stamp = stampText(BigInt(timestamp.sec) * 1_000_000_000n + BigInt(timestamp.nanosec));
+    const stamp = stampText(nanosecondsOf(timestamp));
     for (const { node_name: name, current_status: current } of events) {
       const status = NAV2[current] ?? "idle";
       this.#last.set(name, status);

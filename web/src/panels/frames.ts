@@ -2,7 +2,7 @@
 
 import { fixed } from "../robot/text";
 import { yawOf } from "../transforms/transform";
-import type { Link } from "../transforms/transform_tree";
+import type { Link } from "../transforms/link_history";
 import { h, setText } from "../ui/dom";
 import { every } from "../ui/frames";
 import { emptyState } from "./empty";
@@ -72,7 +72,7 @@ class FramesPanel implements PanelInstance {
       const link = transforms.links.get(frame);
       setText(age, link ? ageOf(link, connection.nowNs) : "root");
       setText(place, link ? placeText(link) : "");
-      age.classList.toggle("bad", link !== undefined && !link.isStatic && link.stampNs > 0n && secondsOf(link, connection.nowNs) > 2);
+      age.classList.toggle("bad", link !== undefined && link.source === "tf" && link.stampNs > 0n && secondsOf(link, connection.nowNs) > 2);
     }
   }
 }
@@ -82,8 +82,8 @@ function secondsOf({ stampNs }: Link, nowNs: bigint): number {
 }
 
 function ageOf(link: Link, nowNs: bigint): string {
-  if (link.isStatic) return "static";
-  return link.stampNs === 0n ? "from odometry" : `${secondsOf(link, nowNs).toFixed(1)} s old`;
+  if (link.source !== "tf") return link.source === "static" ? "static" : "from odometry";
+  return `${secondsOf(link, nowNs).toFixed(1)} s old`;
 }
 
 function placeText({ parent_T_child: { translation: [x, y, z], rotation } }: Link): string {

@@ -2,6 +2,7 @@
 
 import "./log.css";
 import type { Dispose } from "../connection/connection";
+import { nanosecondsOf, type Stamp } from "../transforms/stamp";
 import { h, setText } from "../ui/dom";
 import { nextFrame } from "../ui/frames";
 import { icon } from "../ui/icons";
@@ -10,7 +11,7 @@ import { download, stampText } from "./format";
 import { type PanelContext, type PanelInstance, registerPanel } from "./panel";
 
 interface LogMessage {
-  stamp: { sec: number; nanosec: number };
+  stamp: Stamp;
   level: number;
   name: string;
   msg: string;
@@ -95,7 +96,7 @@ class LogPanel implements PanelInstance {
   };
 
   #add({ stamp, level, name, msg, file, function: where, line }: LogMessage): void {
-    const stampNs = BigInt(stamp.sec) * 1_000_000_000n + BigInt(stamp.nanosec);
+    const stampNs = nanosecondsOf(stamp);
     this.#entries.push({ stampNs, level, node: name, text: msg, place: file ? `${file}:${line} ${where}` : "" });
     this.#total += 1;
     if (this.#entries.length > MOST_KEPT + 500) this.#entries.splice(0, 500);

@@ -1,6 +1,7 @@
 /** Commands of the person at this page. Every method publishes before it returns. */
 
-import { poseOf, stampOf, type Header } from "../scene/messages";
+import { poseOf, type Header } from "../scene/messages";
+import { stampOf } from "../transforms/stamp";
 import { CANCEL_GOAL, GOAL_POINT, GOAL_POSE, INITIAL_POSE, PAUSE, RELEASE, STOP } from "./names";
 import { placeOf, type Goal, type RobotState } from "./robot_state";
 import { fixed, words } from "./text";

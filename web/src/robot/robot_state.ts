@@ -2,6 +2,7 @@
 
 import type { Connection, Dispose } from "../connection/connection";
 import { transformOf, valuesOf, type DiagnosticStatus, type Odometry, type PointStamped, type PoseStamped } from "../scene/messages";
+import { nanosecondsOf } from "../transforms/stamp";
 import { apply, fromYaw, yawOf, type Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
 import {
@@ -55,7 +56,6 @@ export class RobotState {
   /** goal_id of the planner's last report on a goal of this page. */
   #reported = "";
   #odometry: { topic: string; end: Dispose } | null = null;
-  readonly #inferred = new Set<string>();
   readonly #listeners = new Set<() => void>();
 
   constructor(
@@ -195,22 +195,17 @@ export class RobotState {
       speedMps: Math.hypot(linear.x, linear.y) * (linear.x < 0 ? -1 : 1),
       receivedMs: performance.now(),
     };
-    this.#inferTransform(header.frame_id, child, place);
+    this.#inferTransform(header.frame_id, child, place, nanosecondsOf(header.stamp));
     this.baseFrame = this.#baseOf(child);
     this.#notify();
   }
 
   /** Odometry is a transform too: the only one where nothing publishes /tf. */
-  #inferTransform(parent: string, child: string, parent_T_child: Transform): void {
+  #inferTransform(parent: string, child: string, parent_T_child: Transform, stampNs: bigint): void {
     if (!parent || !child || parent === child) return;
-    if (this.transforms.links.has(child) && !this.#inferred.has(child)) return;
-    const link = this.transforms.links.get(child);
-    if (link && link.stampNs > 0n) {
-      this.#inferred.delete(child); // /tf has it now
-      return;
-    }
-    this.#inferred.add(child);
-    this.transforms.set({ parent, child, parent_T_child, stampNs: 0n, isStatic: false });
+    const source = "odometry";
+    if ((this.transforms.links.get(child)?.source ?? source) !== source) return;
+    this.transforms.set({ parent, child, parent_T_child, stampNs, source });
   }
 
   /** The outline is about the base; the odometry may be another frame's, such as the lidar's. */
@@ -239,7 +234,6 @@ export class RobotState {
     this.contacts = 0;
     this.#odometry?.end();
     this.#odometry = null;
-    this.#inferred.clear();
     this.#notify();
   }
 

@@ -2,13 +2,8 @@
 
 import type { Connection, Dispose, Message } from "../connection/connection";
 import type { Theme } from "../theme/theme";
-import type { Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
-import type { Part } from "./primitives";
-
-/** Messages that remain by decay: at most so many, with so many coordinates in all. */
-const MOST_KEPT = 600;
-const MOST_KEPT_NUMBERS = 3_000_000;
+import { placeOf, type Part } from "./primitives";
 
 /** What a user may change; `null`: as the display decides. */
 export interface Look {
@@ -38,7 +33,7 @@ export interface Surroundings {
 }
 
 export interface DisplayStatus {
-  readonly level: "ok" | "empty" | "error" | "off";
+  readonly level: "ok" | "empty" | "late" | "error" | "off";
   readonly text: string;
 }
 
@@ -65,8 +60,7 @@ export abstract class Display<T = unknown> {
   /** Time of the page at which the newest message came; null before the first. */
   receivedMs: number | null = null;
   protected message: T | null = null;
-  #parts: Part[] | null = null;
-  #kept: { parts: Part[]; untilMs: number; numbers: number }[] = [];
+  #parts: readonly Part[] | null = null;
   #end: Dispose | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #expected: string;
@@ -96,7 +90,9 @@ export abstract class Display<T = unknown> {
     if (topic === null) return;
     if (this.isVisible && !this.#end) {
       const { rateHz = 30, every = false } = this.traits;
-      this.#end = this.around.connection.subscribe<T>(topic, { rateHz, every }, (message) => this.#take(message));
+      this.#end = this.around.connection.subscribe<T>(topic, { rateHz, every }, (message) => {
+        if (message.type === this.#expected) this.receive(message);
+      });
     } else if (!this.isVisible) this.dispose();
   }
 
@@ -112,7 +108,6 @@ export abstract class Display<T = unknown> {
   clear(): void {
     this.message = null;
     this.receivedMs = null;
-    this.#kept = [];
     this.restyle();
   }
 
@@ -122,21 +117,17 @@ export abstract class Display<T = unknown> {
     this.around.invalidate();
   }
 
-  /** Primitives of now, and those that remain. */
+  /** Primitives of the newest message. */
   parts(): readonly Part[] {
     if (this.#parts === null) {
       try {
-        this.#parts = this.build();
+        this.#parts = this.placed(this.build());
       } catch (error) {
         this.#parts = []; // a message of lengths that do not fit
         reportError(error);
       }
     }
-    if (this.#kept.length === 0) return this.#parts;
-    const now = performance.now();
-    this.#kept = this.#kept.filter(({ untilMs }) => untilMs > now);
-    if (this.#kept.length > 0) this.later(100, () => this.around.invalidate());
-    return [...this.#kept.flatMap(({ parts }) => parts), ...this.#parts];
+    return this.#parts;
   }
 
   status(): DisplayStatus {
@@ -148,9 +139,9 @@ export abstract class Display<T = unknown> {
       if (known.type !== this.#expected) return { level: "error", text: `wrong type: ${known.type}` };
       if (this.receivedMs === null) return { level: "empty", text: "no messages yet" };
     }
-    const frame = this.parts()[0]?.frame;
-    if (frame !== undefined && fixedFrame !== null && transforms.lookUp(fixedFrame, frame) === null) {
-      return { level: "error", text: `no transform from ${frame || "a frame without a name"} to ${fixedFrame}` };
+    const part = this.parts()[0];
+    if (part && fixedFrame !== null && placeOf(part, fixedFrame, transforms) === null) {
+      return { level: "error", text: `no transform from ${part.frame || "a frame without a name"} to ${fixedFrame}` };
     }
     const detail = this.detail();
     return this.isEmpty() ? { level: "empty", text: detail || "the message is empty" } : { level: "ok", text: detail };
@@ -180,6 +171,11 @@ export abstract class Display<T = unknown> {
 
   protected abstract build(): Part[];
 
+  /** Parts where they are drawn: at the newest transforms of their frames by default. */
+  protected placed(parts: readonly Part[]): readonly Part[] {
+    return parts;
+  }
+
   /** Note a message; keep the newest by default. */
   protected take(value: T, _message: Message<T>): void {
     this.message = value;
@@ -197,29 +193,10 @@ export abstract class Display<T = unknown> {
     return this.look.choice ?? this.traits.choices?.values[0] ?? "";
   }
 
-  #take(message: Message<T>): void {
-    if (message.type !== this.#expected) return;
-    if (this.look.decayS > 0) this.#keep();
+  /** A message that is drawn from now on. */
+  protected receive(message: Message<T>): void {
     this.receivedMs = performance.now();
     this.take(message.value, message);
     this.restyle();
   }
-
-  /** Keep what is drawn now for a while, where it is now. */
-  #keep(): void {
-    const { transforms, fixedFrame } = this.around;
-    if (fixedFrame === null || this.#parts === null) return;
-    const parts = this.#parts.flatMap((part) => {
-      const frozen: Transform | null = transforms.lookUp(fixedFrame, part.frame);
-      return frozen === null ? [] : [{ ...part, frozen }];
-    });
-    this.#kept.push({ parts, untilMs: performance.now() + 1000 * this.look.decayS, numbers: numbersOf(parts) });
-    let numbers = this.#kept.reduce((sum, kept) => sum + kept.numbers, 0);
-    while (this.#kept.length > MOST_KEPT || numbers > MOST_KEPT_NUMBERS) numbers -= this.#kept.shift()!.numbers;
-  }
-}
-
-function numbersOf(parts: readonly Part[]): number {
-  const sizes = parts.flatMap(({ primitives }) => primitives.map((each) => ("positions" in each ? each.positions.length : 0)));
-  return sizes.reduce((sum, size) => sum + size, 0);
 }

@@ -1,10 +1,11 @@
 /** The fields of ROS messages that the scene reads. */
 
+import type { Stamp } from "../transforms/stamp";
 import type { Transform } from "../transforms/transform";
 
 export interface Xyz { x: number; y: number; z: number }
 export interface Rotation extends Xyz { w: number }
-export interface Header { frame_id: string; stamp: { sec: number; nanosec: number } }
+export interface Header { frame_id: string; stamp: Stamp }
 export interface Pose { position: Xyz; orientation: Rotation }
 export interface PoseStamped { header: Header; pose: Pose }
 export interface PointStamped { header: Header; point: Xyz }
@@ -56,7 +57,8 @@ export interface Marker {
   pose: Pose;
   scale: Xyz;
   color: Rgba;
-  lifetime: { sec: number; nanosec: number };
+  lifetime: Stamp;
+  frame_locked: boolean;
   points: Xyz[];
   colors: Rgba[];
   text: string;
@@ -83,8 +85,4 @@ export function poseOf({ translation: [x, y, z], rotation: [qx, qy, qz, qw] }: T
 
 export function valuesOf(status: DiagnosticStatus): Record<string, string> {
   return Object.fromEntries(status.values.map(({ key, value }) => [key, value]));
-}
-
-export function stampOf(ns: bigint): Header["stamp"] {
-  return { sec: Number(ns / 1_000_000_000n), nanosec: Number(ns % 1_000_000_000n) };
 }

@@ -4,6 +4,8 @@
  */
 
 import type { Transform, Vector } from "../transforms/transform";
+import type { TransformTree } from "../transforms/transform_tree";
+import type { Placement } from "./placement";
 
 /** A CSS colour: `#rrggbb`, `#rrggbbaa` or `rgb(…)`. */
 export type Colour = string;
@@ -80,10 +82,15 @@ export type Primitive = Raster | Points | Lines | Solid | Sign | Label;
 export interface Part {
   readonly frame: string;
   readonly primitives: readonly Primitive[];
-  /** fixed_T_frame as it was; the present transform without it. */
-  readonly frozen?: Transform;
+  /** Where the frame was when the data was taken; where it is now without it. */
+  readonly placement?: Placement;
   /** Facts on a picked primitive: name, value. */
   about?(primitive: Primitive, hit: Hit): readonly (readonly [string, string])[];
+}
+
+/** fixed_T_part; null while the frames do not connect. */
+export function placeOf({ frame, placement }: Part, fixed: string, transforms: TransformTree): Transform | null {
+  return placement ? placement.in(fixed) : transforms.lookUp(fixed, frame);
 }
 
 /** Where a primitive was hit. */

@@ -11,7 +11,7 @@ import { CanvasRenderer } from "./canvas_renderer";
 import { DisplayList } from "./display_list";
 import type { Surroundings } from "./display";
 import { onGround, pick, type Pick } from "./picking";
-import type { Part } from "./primitives";
+import { placeOf, type Part } from "./primitives";
 import type { DrawItem, Renderer } from "./renderer";
 import { unionOf, Viewing, type Box, type ViewMode } from "./viewing";
 
@@ -154,7 +154,7 @@ export class Scene implements Surroundings {
     const boxes: Box[] = [];
     const maps = this.displays.all.filter((display) => display.isVisible && display.bounds());
     const first = maps.find(({ id }) => id === "/map") ?? maps[0];
-    if (first) boxes.push(this.#inFixed(first.bounds()!, first.parts()[0]?.frame));
+    if (first) boxes.push(this.#inFixed(first.bounds()!, first.parts()[0]));
     const fixed = this.fixedFrame;
     const base = fixed === null ? null : this.robot.baseIn(fixed);
     if (base) boxes.push(around(base.translation, first ? 0.6 : 4));
@@ -162,9 +162,9 @@ export class Scene implements Surroundings {
     return unionOf(boxes);
   }
 
-  #inFixed(box: Box, frame: string | undefined): Box {
+  #inFixed(box: Box, part: Part | undefined): Box {
     const fixed = this.fixedFrame;
-    const place = fixed === null || frame === undefined ? null : this.transforms.lookUp(fixed, frame);
+    const place = fixed === null || !part ? null : placeOf(part, fixed, this.transforms);
     const [dx, dy] = place?.translation ?? [0, 0];
     return [box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy];
   }
@@ -204,7 +204,7 @@ export class Scene implements Surroundings {
     for (const display of this.displays.all) {
       if (!display.isVisible) continue;
       for (const part of display.parts()) {
-        const fixed_T_part = part.frozen ?? this.transforms.lookUp(fixed, part.frame);
+        const fixed_T_part = placeOf(part, fixed, this.transforms);
         if (fixed_T_part) items.push({ part, fixed_T_part, opacity: display.opacity });
       }
     }

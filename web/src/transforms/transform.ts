@@ -49,6 +49,25 @@ export function inverse({ translation, rotation: [x, y, z, w] }: Transform): Tra
   return { translation: [-tx, -ty, -tz], rotation: back };
 }
 
+/** Between a (0) and b (1): the translation on a straight line, the rotation at a constant rate the shorter way round. */
+export function interpolate(a: Transform, b: Transform, share: number): Transform {
+  const mix = (from: number, to: number): number => from + (to - from) * share;
+  const [ax, ay, az] = a.translation;
+  const [bx, by, bz] = b.translation;
+  return { translation: [mix(ax, bx), mix(ay, by), mix(az, bz)], rotation: slerp(a.rotation, b.rotation, share) };
+}
+
+/** Spherical interpolation (K. Shoemake, "Animating rotation with quaternion curves", 1985). */
+function slerp(a: Quaternion, b: Quaternion, share: number): Quaternion {
+  const dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  const angle = Math.acos(Math.min(1, Math.abs(dot)));
+  const sine = Math.sin(angle);
+  // Below 1e-6 rad the sines divide by almost nothing, and a straight line is as good.
+  const [u, v] = sine < 1e-6 ? [1 - share, share] : [Math.sin((1 - share) * angle) / sine, Math.sin(share * angle) / sine];
+  const w = dot < 0 ? -v : v; // q and -q are the same rotation
+  return [u * a[0] + w * b[0], u * a[1] + w * b[1], u * a[2] + w * b[2], u * a[3] + w * b[3]];
+}
+
 export function yawOf([x, y, z, w]: Quaternion): number {
   return Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }

@@ -1,20 +1,19 @@
-/** Frames and how they connect: the newest transform of each, from /tf and /tf_static. */
+/** Frames and how they connect, now and over the last seconds, from /tf and /tf_static. */
 
 import type { Connection, Dispose } from "../connection/connection";
+import { LinkHistory, type Link } from "./link_history";
+import { nanosecondsOf, type Stamp } from "./stamp";
 import { compose, IDENTITY, inverse, type Transform } from "./transform";
 
-export interface Link {
-  readonly parent: string;
-  readonly child: string;
-  readonly parent_T_child: Transform;
-  readonly stampNs: bigint;
-  readonly isStatic: boolean;
+/** A frame at a time. */
+export interface Place {
+  /** The frame without a parent that the frame hangs from. */
+  readonly root: string;
+  readonly root_T_frame: Transform;
+  /** How much newer the time is than the transforms that are known; 0 if they reach it. */
+  readonly lagNs: bigint;
 }
 
-interface Stamp {
-  sec: number;
-  nanosec: number;
-}
 interface TransformStamped {
   header: { stamp: Stamp; frame_id: string };
   child_frame_id: string;
@@ -25,12 +24,12 @@ interface TransformStamped {
 }
 
 export class TransformTree {
+  readonly #histories = new Map<string, LinkHistory>();
   readonly #links = new Map<string, Link>();
+  readonly #structureListeners = new Set<() => void>();
   readonly #listeners = new Set<() => void>();
-  /** Counts changes of any transform: what depends on frames compares it. */
-  version = 0;
 
-  /** Child frame → link to its parent. */
+  /** Child frame → newest link to its parent. */
   get links(): ReadonlyMap<string, Link> {
     return this.#links;
   }
@@ -44,6 +43,12 @@ export class TransformTree {
 
   /** Called after frames appear, change their parent or leave; not for every new pose. */
   onStructure(callback: () => void): Dispose {
+    this.#structureListeners.add(callback);
+    return () => this.#structureListeners.delete(callback);
+  }
+
+  /** Called after every new transform. */
+  onTransform(callback: () => void): Dispose {
     this.#listeners.add(callback);
     return () => this.#listeners.delete(callback);
   }
@@ -51,12 +56,15 @@ export class TransformTree {
   attach(connection: Connection): Dispose {
     const ends = ["/tf", "/tf_static"].map((topic) =>
       connection.subscribe<{ transforms: TransformStamped[] }>(topic, { every: true }, ({ value }) => {
-        for (const each of value.transforms) this.set(linkOf(each, topic === "/tf_static"));
+        for (const each of value.transforms) this.set(linkOf(each, topic === "/tf_static" ? "static" : "tf"));
       }),
     );
     ends.push(
       connection.on("status", ({ state }) => {
         if (state === "lost") this.clear();
+      }),
+      connection.on("reset", ({ topics }) => {
+        if (topics === "all") this.clearMoving();
       }),
     );
     return () => ends.forEach((end) => end());
@@ -64,18 +72,31 @@ export class TransformTree {
 
   set(link: Link): void {
     const before = this.#links.get(link.child);
-    this.#links.set(link.child, link);
-    this.version += 1;
-    if (before?.parent !== link.parent) this.#notify();
+    const history = this.#histories.get(link.child);
+    if (history) history.add(link);
+    else this.#histories.set(link.child, new LinkHistory(link));
+    this.#links.set(link.child, history?.newest ?? link);
+    for (const callback of this.#listeners) callback();
+    if (before?.parent !== link.parent) this.#notifyStructure();
   }
 
   clear(): void {
+    this.#histories.clear();
     this.#links.clear();
-    this.version += 1;
-    this.#notify();
+    this.#notifyStructure();
   }
 
-  /** fixed_T_frame, or null while the frames do not connect. */
+  /** Time went back: what moves is not known any more. */
+  clearMoving(): void {
+    for (const { child, source } of [...this.#links.values()]) {
+      if (source === "static") continue;
+      this.#histories.delete(child);
+      this.#links.delete(child);
+    }
+    this.#notifyStructure();
+  }
+
+  /** fixed_T_frame of the newest transforms, or null while the frames do not connect. */
   lookUp(fixed: string, frame: string): Transform | null {
     if (fixed === frame) return IDENTITY;
     const up = this.#ancestors(frame);
@@ -89,33 +110,59 @@ export class TransformTree {
 
   /** The frame without a parent that a frame hangs from. */
   root(frame: string): string {
-    return [...this.#ancestors(frame).keys()].at(-1) ?? frame;
+    return this.#chain(frame).at(-1)?.parent ?? frame;
+  }
+
+  /** Where a frame was, with the nearest transforms that are known. */
+  placeAt(frame: string, stampNs: bigint): Place {
+    let place: Place = { root: frame, root_T_frame: IDENTITY, lagNs: 0n };
+    for (const { parent, child } of this.#chain(frame)) {
+      const history = this.#histories.get(child)!;
+      const lagNs = history.lagNs(stampNs);
+      place = {
+        root: parent,
+        root_T_frame: compose(history.at(stampNs), place.root_T_frame),
+        lagNs: lagNs > place.lagNs ? lagNs : place.lagNs,
+      };
+    }
+    return place;
   }
 
   /** Ancestor → ancestor_T_frame, the frame itself first. */
   #ancestors(frame: string): Map<string, Transform> {
-    const found = new Map<string, Transform>([[frame, IDENTITY]]);
-    let at = frame;
-    let link: Link | undefined;
-    while ((link = this.#links.get(at)) && !found.has(link.parent)) {
-      found.set(link.parent, compose(link.parent_T_child, found.get(at) ?? IDENTITY));
-      at = link.parent;
+    let parent_T_frame = IDENTITY;
+    const found = new Map([[frame, parent_T_frame]]);
+    for (const { parent, parent_T_child } of this.#chain(frame)) {
+      parent_T_frame = compose(parent_T_child, parent_T_frame);
+      found.set(parent, parent_T_frame);
     }
     return found;
   }
 
-  #notify(): void {
-    for (const callback of this.#listeners) callback();
+  /** Links from a frame up to its root; of a loop, each once. */
+  #chain(frame: string): Link[] {
+    const chain: Link[] = [];
+    const seen = new Set([frame]);
+    let link: Link | undefined;
+    for (let at = frame; (link = this.#links.get(at)) && !seen.has(link.parent); at = link.parent) {
+      seen.add(link.parent);
+      chain.push(link);
+    }
+    return chain;
+  }
+
+  #notifyStructure(): void {
+    for (const callback of this.#structureListeners) callback();
   }
 }
 
-function linkOf({ header, child_frame_id: child, transform }: TransformStamped, isStatic: boolean): Link {
+function linkOf({ header, child_frame_id: child, transform }: TransformStamped, source: Link["source"]): Link {
   const { translation: t, rotation: r } = transform;
   return {
     parent: header.frame_id,
     child,
     parent_T_child: { translation: [t.x, t.y, t.z], rotation: [r.x, r.y, r.z, r.w] },
-    stampNs: BigInt(header.stamp.sec) * 1_000_000_000n + BigInt(header.stamp.nanosec),
-    isStatic,
+    stampNs: nanosecondsOf(header.stamp),
+    source,
   };
 }

@@ -3,6 +3,8 @@
 import { Display } from "../display";
 import { transformOf, type Marker } from "../messages";
 import { colourOf, type Colour, type Part, type Primitive } from "../primitives";
+import { nanosecondsOf } from "../../transforms/stamp";
+import { Placement } from "../placement";
 import { MeshStore } from "./meshes";
 
 const ARROW = 0, CUBE = 1, SPHERE = 2, CYLINDER = 3, LINE_STRIP = 4, LINE_LIST = 5, CUBE_LIST = 6, SPHERE_LIST = 7;
@@ -12,6 +14,7 @@ const MOST_MARKERS = 5000;
 
 interface Kept {
   readonly marker: Marker;
+  readonly placement: Placement;
   /** Time of the page at which its lifetime ends. */
   readonly untilMs: number;
 }
@@ -21,7 +24,8 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
   readonly #meshes = new MeshStore(this.around.connection, () => this.restyle());
 
   protected override take(value: Marker | { markers: Marker[] }): void {
-    for (const marker of "markers" in value ? value.markers : [value]) this.#apply(marker);
+    const placements = new Map<string, Placement>(); // markers of one frame and stamp are one part
+    for (const marker of "markers" in value ? value.markers : [value]) this.#apply(marker, placements);
   }
 
   override clear(): void {
@@ -29,28 +33,31 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
     super.clear();
   }
 
-  #apply(marker: Marker): void {
+  #apply(marker: Marker, placements: Map<string, Placement>): void {
     const key = `${marker.ns}/${marker.id}`;
     if (marker.action === DELETE_ALL) this.#markers.clear();
     else if (marker.action === DELETE) this.#markers.delete(key);
     else {
-      const lifetimeMs = marker.lifetime.sec * 1000 + marker.lifetime.nanosec / 1e6;
-      this.#markers.set(key, { marker, untilMs: lifetimeMs > 0 ? performance.now() + lifetimeMs : Infinity });
+      const lifetimeMs = Number(nanosecondsOf(marker.lifetime)) / 1e6;
+      const { frame_id: frame, stamp } = marker.header;
+      const stampNs = marker.frame_locked ? 0n : nanosecondsOf(stamp);
+      const placement = placements.get(`${stampNs} ${frame}`) ?? new Placement(this.around.transforms, frame, stampNs);
+      placements.set(`${stampNs} ${frame}`, placement);
+      this.#markers.set(key, { marker, placement, untilMs: lifetimeMs > 0 ? performance.now() + lifetimeMs : Infinity });
       if (this.#markers.size > MOST_MARKERS) this.#markers.delete(this.#markers.keys().next().value ?? "");
     }
   }
 
   protected override build(): Part[] {
     const now = performance.now();
-    const byFrame = new Map<string, { primitives: Primitive[]; names: Map<Primitive, string> }>();
-    for (const [key, { marker, untilMs }] of this.#markers) {
+    const groups = new Map<Placement, { primitives: Primitive[]; names: Map<Primitive, string> }>();
+    for (const [key, { marker, placement, untilMs }] of this.#markers) {
       if (untilMs < now) {
         this.#markers.delete(key);
         continue;
       }
-      const frame = marker.header.frame_id;
-      const group = byFrame.get(frame) ?? { primitives: [], names: new Map<Primitive, string>() };
-      byFrame.set(frame, group);
+      const group = groups.get(placement) ?? { primitives: [], names: new Map<Primitive, string>() };
+      groups.set(placement, group);
       for (const primitive of this.#primitives(marker)) {
         group.primitives.push(primitive);
         group.names.set(primitive, key);
@@ -59,8 +66,9 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
     if ([...this.#markers.values()].some(({ untilMs }) => untilMs < Infinity)) {
       this.later(250, () => this.restyle()); // their lifetime ends without a message
     }
-    return [...byFrame].map(([frame, { primitives, names }]) => ({
-      frame,
+    return [...groups].map(([placement, { primitives, names }]) => ({
+      frame: placement.frame,
+      placement,
       primitives,
       about: (primitive) => [["marker", names.get(primitive) ?? ""]],
     }));

@@ -1,11 +1,11 @@
 /** Measured points: sensor_msgs LaserScan, PointCloud2 and Range. */
 
 import { boxOf, rampOf, readCloud } from "../cloud_reading";
-import { Display } from "../display";
 import type { LaserScan, PointCloud2, Range } from "../messages";
 import { faded, type Part } from "../primitives";
+import { StampedDisplay } from "../stamped_display";
 
-export class ScanDisplay extends Display<LaserScan> {
+export class ScanDisplay extends StampedDisplay<LaserScan> {
   #count = 0;
 
   protected override build(): Part[] {
@@ -39,7 +39,7 @@ export class ScanDisplay extends Display<LaserScan> {
   }
 }
 
-export class CloudDisplay extends Display<PointCloud2> {
+export class CloudDisplay extends StampedDisplay<PointCloud2> {
   #count = 0;
   #box: readonly [number, number, number, number] | null = null;
   #why = "";
@@ -73,7 +73,7 @@ export class CloudDisplay extends Display<PointCloud2> {
 }
 
 /** A cone from the sensor to what it measured, in the plane. */
-export class RangeDisplay extends Display<Range> {
+export class RangeDisplay extends StampedDisplay<Range> {
   protected override build(): Part[] {
     const value = this.message;
     if (!value) return [];

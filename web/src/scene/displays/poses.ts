@@ -1,14 +1,14 @@
 /** Paths, poses, polygons and points. */
 
-import { Display } from "../display";
 import {
-  transformOf, type ParticleCloud, type Path, type PointStamped, type PolygonStamped, type PoseArray, type PoseStamped,
+  transformOf, type Header, type ParticleCloud, type Path, type PointStamped, type PolygonStamped, type PoseArray, type PoseStamped,
   type PoseWithCovarianceStamped,
 } from "../messages";
 import { faded, type Part, type Primitive } from "../primitives";
+import { StampedDisplay } from "../stamped_display";
 import { yawOf, type Transform } from "../../transforms/transform";
 
-export class PathDisplay extends Display<Path> {
+export class PathDisplay extends StampedDisplay<Path> {
   #lengthM = 0;
 
   protected override build(): Part[] {
@@ -22,10 +22,14 @@ export class PathDisplay extends Display<Path> {
     });
     const line = { kind: "lines", positions, mode: "strip", colour: this.colour, widthPx: this.size } as const;
     return [{
-      frame: path.header.frame_id || (path.poses[0]?.header.frame_id ?? ""),
+      frame: this.headerOf(path).frame_id,
       primitives: path.poses.length > 1 ? [line] : [],
       about: () => [["length", `${this.#lengthM.toFixed(2)} m`], ["poses", String(path.poses.length)]],
     }];
+  }
+
+  protected override headerOf({ header, poses }: Path): Header {
+    return header.frame_id ? header : (poses[0]?.header ?? header);
   }
 
   protected override detail(): string {
@@ -36,7 +40,7 @@ export class PathDisplay extends Display<Path> {
 type AnyPoses = PoseStamped | PoseWithCovarianceStamped | PoseArray | ParticleCloud;
 
 /** PoseStamped, PoseWithCovarianceStamped, PoseArray, ParticleCloud: arrows, with covariance. */
-export class PosesDisplay extends Display<AnyPoses> {
+export class PosesDisplay extends StampedDisplay<AnyPoses> {
   protected override build(): Part[] {
     const value = this.message;
     if (!value) return [];
@@ -105,7 +109,7 @@ export function covarianceEllipse(covariance: ArrayLike<number>, pose: Transform
   return positions;
 }
 
-export class PolygonDisplay extends Display<PolygonStamped> {
+export class PolygonDisplay extends StampedDisplay<PolygonStamped> {
   protected override build(): Part[] {
     const value = this.message;
     if (!value) return [];
@@ -119,7 +123,7 @@ export class PolygonDisplay extends Display<PolygonStamped> {
   }
 }
 
-export class PointDisplay extends Display<PointStamped> {
+export class PointDisplay extends StampedDisplay<PointStamped> {
   protected override build(): Part[] {
     const value = this.message;
     if (!value) return [];
