@@ -135,7 +135,9 @@ def slam(options: SlamOptions) -> None:
             base_frame=params.base_frame,
         )
         damage: list[str] = []
-        scans = RecordedScans(reader, source, lambda each: damage.append(str(each)))
+        scans = RecordedScans(
+            reader, source, on_damage=lambda each: damage.append(str(each))
+        )
         run = _slam(options, params)
         used = _add_all(run, scans)
     for problem in (*damage, *scans.problems):

@@ -66,7 +66,7 @@ def _replay(
         [_maker(name) for name in nodes.nodes],
         record=record,
         overwrite=options.output.overwrite,
-        overrides=resolved.override_parameters if resolved else _no_parameters,
+        robot=resolved,
         arguments=_arguments(
             nodes.parameters or [],
             nodes.params_files or [],
@@ -126,10 +126,6 @@ def _robot(world: str | None, robot: str | None) -> "ResolvedScene | None":
 
     options = RunOptions(world=world or "empty", robot=robot)
     return resolve_scene(options)
-
-
-def _no_parameters(overrides: object) -> None:
-    """Use the recorded values."""
 
 
 def _arguments(

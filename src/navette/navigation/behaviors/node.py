@@ -17,10 +17,7 @@ from navette.navigation.behaviors.motions import MeasuredMotion
 from navette.navigation.behaviors.params import BehaviorParams
 from navette.navigation.behaviors.runner import AssistedTeleop, BehaviorInputs
 from navette.navigation.behaviors.servers.actions import BEHAVIOR_ACTIONS
-from navette.navigation.behaviors.servers.behavior_server import (
-    BehaviorContext,
-    BehaviorServer,
-)
+from navette.navigation.behaviors.servers.behavior_server import BehaviorServer
 from navette.navigation.grids import CollisionCheck
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.navigation.servers.motion_node import MotionNode
@@ -69,16 +66,11 @@ class BehaviorNode(MotionNode):
         self._lifecycle = StageLifecycle(
             self,
             "behavior_server",
-            lambda: self._stop_at_once("behavior_server was deactivated"),
-        )
-        context = BehaviorContext(
-            params=lambda: self.params,
-            collision=lambda: self._collision,
-            begin=self._begin,
-            accepts=lambda: self._lifecycle.is_active,
+            on_inactive=lambda: self._stop_at_once("behavior_server was deactivated"),
         )
         self._servers = [
-            BehaviorServer(self, spec, context) for spec in BEHAVIOR_ACTIONS
+            BehaviorServer(self, spec, host=self, activation=self._lifecycle)
+            for spec in BEHAVIOR_ACTIONS
         ]
         self._last_ns = 0
         self._timer = self._new_timer()
@@ -129,7 +121,7 @@ class BehaviorNode(MotionNode):
 
     def _start(self) -> None:
         self._start_tracking()
-        self._collision = CollisionCheck(self.params.body())
+        self.collision = CollisionCheck(self.params.body())
         self._located_ns = None
         self._odometry_period.reset()
         self._costmap_period.reset()
@@ -137,7 +129,7 @@ class BehaviorNode(MotionNode):
     def _new_timer(self) -> Any:
         return self.create_timer(1 / self.params.rate_hz, self._tick, autostart=False)
 
-    def _begin(self, server: BehaviorServer) -> None:
+    def begin(self, server: BehaviorServer) -> None:
         """Make a server's goal the only one."""
         if self._active is not None and self._active is not server:
             self._send(self._active, (0.0, 0.0))
@@ -179,10 +171,10 @@ class BehaviorNode(MotionNode):
     def _place_obstacles(self) -> None:
         params = self.params
         speed = max(params.max_speed_mps, abs(self._tracker.velocity[0]))
-        reach_m = self._collision.reach(speed) + speed * params.simulate_ahead_s
+        reach_m = self.collision.reach(speed) + speed * params.simulate_ahead_s
         found = self._placed_obstacles(reach_m, reach_m)
         if found is not None:
-            self._collision.set_obstacles(*found)
+            self.collision.set_obstacles(*found)
 
     def _stop_at_once(self, reason: str) -> None:
         if self._active is not None:

@@ -21,13 +21,16 @@ _NEAR_M = 0.3
 _MOVED_M = 0.1
 
 
+OnTrialEnd = Callable[[], None]
+"""Called once, near the goal or at a contact."""
+
+
 class TrialObserver(Node):
-    """Record the true motion; call ``on_end`` near the goal, or at a contact.
+    """Record the true motion; end the trial near the goal, or at a contact.
 
     Args:
         goal: last goal (m, map).
         reach_m: distance to it that ends the trial; 0 = never.
-        on_end: called once.
         ends_at_contact: whether the first contact is an end too.
     """
 
@@ -35,8 +38,8 @@ class TrialObserver(Node):
         self,
         goal: Point,
         reach_m: float,
-        on_end: Callable[[], None],
         *,
+        on_end: OnTrialEnd,
         ends_at_contact: bool = False,
         context: Context,
     ) -> None:

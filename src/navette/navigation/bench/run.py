@@ -43,7 +43,7 @@ def run_trial(trial: Trial, load_nodes: NodeLoader | None = None) -> TrialResult
         observer = TrialObserver(
             trial.goals[-1],
             trial.reach_m,
-            simulation.stop,
+            on_end=simulation.stop,
             ends_at_contact=trial.ends_at_contact,
             context=simulation.context,
         )

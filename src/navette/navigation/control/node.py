@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from navette.errors import InvalidInputError, InvalidValueError
-from navette.geometry import Footprint
+from navette.geometry import Footprint, Pose2
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Twist
@@ -33,10 +33,7 @@ from navette.navigation.control.records import (
     FollowerInputs,
     FollowerOutput,
 )
-from navette.navigation.control.servers.follow_path import (
-    FollowContext,
-    FollowPathServer,
-)
+from navette.navigation.control.servers.follow_path import FollowPathServer
 from navette.navigation.control.servers.reports import ControlReports
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import (
@@ -141,20 +138,12 @@ class ControlNode(MotionNode):
         self._stall = StallMonitor(params.stall_time_s)
         self._commanded = STOP
         self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
-        self._reports = ControlReports(self, self._situation)
+        self._reports = ControlReports(self, self)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
-        context = FollowContext(
-            params=lambda: self.params,
-            frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
-            follow=self._follow_goal,
-            stop=self._stop_goal,
-        )
         self._lifecycle = StageLifecycle(
-            self, "controller_server", lambda: self.on_path(Path())
+            self, "controller_server", on_inactive=lambda: self.on_path(Path())
         )
-        self._follow_server = FollowPathServer(
-            self, context, lambda: self._lifecycle.is_active
-        )
+        self._follow_server = FollowPathServer(self, self, self._lifecycle)
 
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""
@@ -298,12 +287,15 @@ class ControlNode(MotionNode):
             self._on_fault(error)
         self._path = poses
 
-    def _follow_goal(self, poses: Poses, method: str) -> None:
+    def frame_on_map(self, frame_id: str) -> Pose2 | None:
+        return self._tracker.frame_on_map(frame_id)
+
+    def follow_goal(self, poses: Poses, method: str) -> None:
         """Follow the path of a goal with a steering method; empty: the configured."""
         self._begin(goal=True, method=method)
         self._set_path(poses)
 
-    def _stop_goal(self) -> bool:
+    def stop_goal(self) -> bool:
         """Stop if the path is that of a goal; return whether it was."""
         was_goal = self._follows_goal
         if was_goal:
@@ -440,7 +432,7 @@ class ControlNode(MotionNode):
         twist.linear.x, twist.angular.z, twist.linear.y = output.command
         self.publish(topics.CMD_VEL_NAV.name, twist)
 
-    def _situation(self) -> Situation:
+    def situation(self) -> Situation:
         """Return what an explanation of a stop requires."""
         frame = self._odometry_frame
         return Situation(

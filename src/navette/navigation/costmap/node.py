@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
@@ -32,7 +32,7 @@ from navette.navigation.grids import (
     grid_to_message,
     points_to_message,
 )
-from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
+from navette.navigation.servers.costmap_services import CostmapServices
 from navette.params.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.stamp_selection import StampSelection
@@ -86,14 +86,7 @@ class CostmapNode(StageNode):
         self._selection = StampSelection(self.params.rate_hz)
         self._fault = ""  # newest of the user's method, or of a source
         self._newest: OccupancyGrid | None = None
-        source = CostmapSource(
-            grid=lambda: self._newest,
-            clear=self._clear,
-            frame_on_grid=lambda frame_id: Pose2(0.0, 0.0, 0.0),
-            robot_frame=lambda: "",
-            footprint=lambda: None,
-        )
-        self._services = CostmapServices(self, "local_costmap", source)
+        self._services = CostmapServices(self, "local_costmap", self)
 
     def declare_params(self) -> Any:
         """Declare the parameters of the obstacle layer, too."""
@@ -161,7 +154,20 @@ class CostmapNode(StageNode):
             self._fault = fault
             self.get_logger().error(f"{fault}\nNo costmap: the robot stops.")
 
-    def _clear(self, region: SquareRegion | None) -> None:
+    # -- CostmapSource: around the robot, and without a footprint -----------------
+
+    footprint: Footprint | None = None
+
+    def newest_grid(self) -> OccupancyGrid | None:
+        return self._newest
+
+    def robot_on_grid(self) -> Pose2:
+        return Pose2(0.0, 0.0, 0.0)
+
+    def frame_on_grid(self, frame_id: str) -> Pose2:
+        return Pose2(0.0, 0.0, 0.0)
+
+    def clear_costmap(self, region: SquareRegion | None) -> None:
         """Clear the costmap of Nav2's name until the next scan.
 
         The costmap that stops the robot is not changed: what a beam hits is there.

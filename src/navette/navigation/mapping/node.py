@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from navette.errors import FileFormatError, InvalidInputError, InvalidValueError
+from navette.geometry import Footprint, Pose2
 from navette.geometry.map_files import read_occupancy_map
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
@@ -44,11 +45,8 @@ from navette.navigation.mapping.memory import (
 )
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
-from navette.navigation.mapping.servers.map_services import MapServices, MapStore
-from navette.navigation.servers.costmap_services import (
-    CostmapServices,
-    CostmapSource,
-)
+from navette.navigation.mapping.servers.map_services import MapServices
+from navette.navigation.servers.costmap_services import CostmapServices
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
@@ -133,25 +131,9 @@ class MapMemoryNode(StageNode):
         self._start()
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
-        source = CostmapSource(
-            grid=lambda: self._whole_map(),
-            clear=self._clear,
-            frame_on_grid=lambda frame_id: self._tracker.frame_on_map(frame_id),
-            robot_frame=lambda: self.params.base_frame,
-            footprint=lambda: self._memory.footprint,
-        )
         self._lifecycle = StageLifecycle(self, "map_server")
-        store = MapStore(
-            topics=lambda: tuple(
-                self.resolve_topic_name(each.name)
-                for each in (topics.MAP, topics.GLOBAL_COSTMAP)
-            ),
-            newest=lambda: self._whole_map(),
-            load=self._load,
-            is_probability=lambda: self.params.fusion == "log_odds",
-        )
-        self._map_services = MapServices(self, store)
-        self._costmap_services = CostmapServices(self, "global_costmap", source)
+        self._map_services = MapServices(self, self)
+        self._costmap_services = CostmapServices(self, "global_costmap", self)
         if self.params.map_file:
             self._load_file()
 
@@ -367,11 +349,31 @@ class MapMemoryNode(StageNode):
 
     def _publish_whole(self) -> None:
         self._served, self._whole_ns = self._subscribers(), self._map_ns
-        message = self._whole_map()
+        message = self.newest_grid()
         self.hand_over(topics.MAP.name, message)
         self.hand_over(topics.GLOBAL_COSTMAP.name, message)
 
-    def _whole_map(self) -> OccupancyGrid:
+    # -- MapStore and CostmapSource ----------------------------------------------
+
+    @property
+    def footprint(self) -> Footprint | None:
+        return self._memory.footprint
+
+    @property
+    def is_probability_map(self) -> bool:
+        return self.params.fusion == "log_odds"
+
+    def map_topics(self) -> tuple[str, ...]:
+        names = topics.MAP.name, topics.GLOBAL_COSTMAP.name
+        return tuple(map(self.resolve_topic_name, names))
+
+    def robot_on_grid(self) -> Pose2 | None:
+        return self._tracker.frame_on_map(self.params.base_frame)
+
+    def frame_on_grid(self, frame_id: str) -> Pose2 | None:
+        return self._tracker.frame_on_map(frame_id)
+
+    def newest_grid(self) -> OccupancyGrid:
         """Return the map as it was last published, or updated."""
         if self._published is None:
             memory, frame_id = self._memory, self.params.map_frame
@@ -389,7 +391,7 @@ class MapMemoryNode(StageNode):
             for each in (topics.MAP, topics.GLOBAL_COSTMAP)
         )
 
-    def _load(self, cells: Cells, spec: GridSpec) -> None:
+    def load_map(self, cells: Cells, spec: GridSpec) -> None:
         """Replace the map by a loaded one; scans change it from now on."""
         self._memory.load(cells, spec)
         self._gate.reset()
@@ -401,9 +403,10 @@ class MapMemoryNode(StageNode):
     def _load_file(self) -> None:
         known = read_occupancy_map(pathlib.Path(self.params.map_file).expanduser())
         height, width = known.cells.shape
-        self._load(known.cells, GridSpec(known.resolution, width, height, known.origin))
+        spec = GridSpec(known.resolution, width, height, known.origin)
+        self.load_map(known.cells, spec)
 
-    def _clear(self, region: SquareRegion | None) -> None:
+    def clear_costmap(self, region: SquareRegion | None) -> None:
         """Clear a region of the map; what is seen now is fused again at once.
 
         What stands beside the body where no sensor looks stays: a robot that turns

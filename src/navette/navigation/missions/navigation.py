@@ -8,7 +8,7 @@ at rest.
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -75,6 +75,10 @@ class NavigationProgress:
     goals_left: int
 
 
+OnNavigationEnd = Callable[[NavigationEnd], None]
+"""Called once, with how the navigation ended."""
+
+
 @dataclass
 class Navigation:
     """A goal, or goals to drive through, under way.
@@ -82,13 +86,12 @@ class Navigation:
     Attributes:
         goals: one for ``navigate_to_pose``.
         tree: file of the behaviour tree.
-        on_end: called once, with the result.
         through: whether all goals are on the blackboard as ``goals``.
     """
 
     goals: Sequence[PoseStamped]
     tree: Path
-    on_end: Callable[[NavigationEnd], None]
+    on_end: OnNavigationEnd = field(kw_only=True)
     through: bool = False
     started_ns: int = 0
 

@@ -125,13 +125,15 @@ class MissionNode(StageNode):
         self._list_goal: _ListGoal | None = None
         self._waiting_since_ns: int | None = None
         self._has_explained = False
-        self._robot = NodeRobot(self, self._tracker, self._step)
+        self._robot = NodeRobot(self, self._tracker, on_call_end=self._step)
         self._navigator = TreeNavigator(self._robot, params.error_code_names)
         self._load_trees()
-        self._lifecycle = StageLifecycle(self, "bt_navigator", self._navigator.cancel)
+        self._lifecycle = StageLifecycle(
+            self, "bt_navigator", on_inactive=self._navigator.cancel
+        )
         StageLifecycle(self, "waypoint_follower")
         self._servers = NavigationServers(
-            self, self._robot, self._navigator, lambda: self._lifecycle.is_active
+            self, self._robot, self._navigator, activation=self._lifecycle
         )
         self._stepping = False
         self._timer = self.create_timer(1 / params.rate_hz, self._check)

@@ -39,7 +39,7 @@ from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.received_map import MapPart
 from navette.navigation.planning.reports import RobotMotion
 from navette.navigation.planning.servers.navigator_status import NavigatorStatus
-from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
+from navette.navigation.planning.servers.path_server import PathServer
 from navette.navigation.planning.servers.smoother_server import SmootherServer
 from navette.navigation.planning.step_runner import StepRunner
 from navette.navigation.servers.lifecycle import StageLifecycle
@@ -156,12 +156,12 @@ class PlannerNode(StageNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("planner", **kwargs)
-        self._worker = Worker(self)
+        self.worker = Worker(self)
         self._tracker = self._new_tracker()
         navigator = Navigator(self.params)
         navigator.planner.warm_up()
         self._runner = StepRunner(
-            navigator, self._worker, self._publish_path_and_status
+            navigator, self.worker, on_stepped=self._publish_path_and_status
         )
         self._odometry_ns: int | None = None
         self._localization = LocalizationCheck()
@@ -170,20 +170,12 @@ class PlannerNode(StageNode):
         self._path_ns = 0  # of the newest path
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
-        context = PlanningContext(
-            params=lambda: self.params,
-            planner=self._planner_with_map,
-            robot=self._fresh_pose,
-            frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
-            publish_plan=self._publish_plan,
-            worker=self._worker,
+        self._lifecycle = StageLifecycle(
+            self, "planner_server", on_inactive=self._end_goal
         )
-        self._lifecycle = StageLifecycle(self, "planner_server", self._end_goal)
         smoothing = StageLifecycle(self, "smoother_server")
-        self._smoother_server = SmootherServer(
-            self, context, lambda: smoothing.is_active
-        )
-        self._path_server = PathServer(self, context, lambda: self._lifecycle.is_active)
+        self._smoother_server = SmootherServer(self, self, smoothing)
+        self._path_server = PathServer(self, self, self._lifecycle)
         self.create_service(Trigger, "~/cancel", self.on_cancel)
         self.create_service(Trigger, "~/avoid_place", self.on_avoid_place)
         self._report()
@@ -230,7 +222,7 @@ class PlannerNode(StageNode):
         change = self._space.change(part)
         # The worker may still be busy with a request, or a step that was dropped.
         self._runner.change(
-            lambda: change.apply(self._navigator, is_shared=self._worker.is_busy)
+            lambda: change.apply(self._navigator, is_shared=self.worker.is_busy)
         )
         self.on_timer()
 
@@ -395,7 +387,7 @@ class PlannerNode(StageNode):
 
     def destroy_node(self) -> None:
         """End the worker, then destroy the node."""
-        self._worker.close()
+        self.worker.close()
         super().destroy_node()
 
     @property
@@ -413,10 +405,14 @@ class PlannerNode(StageNode):
         pose = self._tracker.latest
         return None if pose is None else RobotMotion(pose, *self._tracker.velocity)
 
-    def _planner_with_map(self) -> Planner | None:
+    def frame_on_map(self, frame_id: str) -> Pose2 | None:
+        """Return the pose of a frame in the map frame; None if unknown."""
+        return self._tracker.frame_on_map(frame_id)
+
+    def planner_with_map(self) -> Planner | None:
         return self._navigator.planner if self._space.has_map else None
 
-    def _fresh_pose(self) -> Pose2 | None:
+    def fresh_pose(self) -> Pose2 | None:
         return (
             None
             if self._localization.unlocated or self._is_stale()
@@ -434,7 +430,7 @@ class PlannerNode(StageNode):
         return self.count_publishers(topics.PLANNER_GOAL.name) > 0
 
     def _set_goal(self, header: Header, goal: Goal) -> None:
-        map_T_frame = self._frame_on_map(header.frame_id)
+        map_T_frame = self._frame_of_goal(header.frame_id)
         self._runner.drop()
         if map_T_frame is None:
             self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
@@ -449,7 +445,7 @@ class PlannerNode(StageNode):
         self._report()
         self.on_timer()
 
-    def _frame_on_map(self, frame_id: str) -> Pose2 | None:
+    def _frame_of_goal(self, frame_id: str) -> Pose2 | None:
         """Return the present map_T_frame, or None for an unknown frame."""
         map_frame = self.params.map_frame
         if not frame_id:
@@ -463,10 +459,10 @@ class PlannerNode(StageNode):
             self.hand_over(topics.PATH.name, message)
             self._path_ns = self._now_ns
             if len(poses):
-                self._publish_plan(message)
+                self.publish_plan(message)
         self._report()
 
-    def _publish_plan(self, path: Path) -> None:
+    def publish_plan(self, path: Path) -> None:
         if self.has_listeners(topics.PLAN.name):
             self.hand_over(topics.PLAN.name, path)
 

@@ -142,10 +142,14 @@ class OwnPlan:
         return joined(poses, turn_in_place(x, y, yaw, goal.yaw))
 
 
+SearchMethod = Callable[..., Any]
+"""A user's ``search(cost, start, goal)``; what it returns is checked."""
+
+
 class OwnSearch:
     """A user's search on the grid of costs; its faults raise MethodFaultError."""
 
-    def __init__(self, search: Callable[..., Any], name: str) -> None:
+    def __init__(self, search: SearchMethod, name: str) -> None:
         self._search = search
         self._name = f"planner {name}: search(cost, start, goal)"
 

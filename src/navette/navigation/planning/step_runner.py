@@ -5,6 +5,9 @@ from typing import Any, Protocol
 
 from navette.navigation.planning.navigator import Navigator
 
+OnStepped = Callable[[], None]
+"""Called after every step, in the thread of the callbacks."""
+
 
 class _Worker(Protocol):
     def run(
@@ -26,11 +29,10 @@ class StepRunner:
     Args:
         navigator: the initial state.
         worker: computes the steps.
-        on_stepped: called after every step.
     """
 
     def __init__(
-        self, navigator: Navigator, worker: _Worker, on_stepped: Callable[[], None]
+        self, navigator: Navigator, worker: _Worker, *, on_stepped: OnStepped
     ) -> None:
         self.navigator = navigator
         self._worker = worker

@@ -1,8 +1,6 @@
 """Services of one of Nav2's costmaps: clear it, get it, get a cost of it."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -29,23 +27,24 @@ from navette.runtime.stage.path_messages import pose_of
 _OUTSIDE = -1.0
 
 
-@dataclass(frozen=True)
-class CostmapSource:
-    """The costmap behind the services.
+class CostmapSource(Protocol):
+    """The node whose costmap the services offer."""
 
-    Attributes:
-        grid: the newest grid; None before the first.
-        clear: clears a region, or everything for None.
-        frame_on_grid: pose of a frame in the grid's frame; None if unknown.
-        robot_frame: the frame of the robot's base.
-        footprint: the robot's outline in that frame; None if unknown.
-    """
+    def newest_grid(self) -> OccupancyGrid | None:
+        """Return the newest grid; None before the first."""
 
-    grid: Callable[[], OccupancyGrid | None]
-    clear: Callable[[SquareRegion | None], None]
-    frame_on_grid: Callable[[str], Pose2 | None]
-    robot_frame: Callable[[], str]
-    footprint: Callable[[], Footprint | None]
+    def clear_costmap(self, region: SquareRegion | None) -> None:
+        """Clear a region, or everything for None."""
+
+    def robot_on_grid(self) -> Pose2 | None:
+        """Return the pose of the robot's base in the grid's frame; None if unknown."""
+
+    def frame_on_grid(self, frame_id: str) -> Pose2 | None:
+        """Return the pose of a frame in the grid's frame; None if unknown."""
+
+    @property
+    def footprint(self) -> Footprint | None:
+        """The robot's outline in the frame of its base; None if unknown."""
 
 
 class CostmapServices:
@@ -84,7 +83,7 @@ class CostmapServices:
 
     def _clear_all(self, request: Any, response: Any) -> Any:
         self._node.get_logger().info(f"{self._name}: cleared on request")
-        self._source.clear(None)
+        self._source.clear_costmap(None)
         fill(response, success=True)  # since Lyrical; also below
         return response
 
@@ -127,11 +126,11 @@ class CostmapServices:
             f"{self._name}: cleared {'all but ' if outside else ''}{edge:g} m "
             f"around ({at.x:.6g}, {at.y:.6g})"
         )
-        self._source.clear(SquareRegion(at.x, at.y, edge, outside))
+        self._source.clear_costmap(SquareRegion(at.x, at.y, edge, outside))
         return True
 
     def _robot(self) -> Pose2 | None:
-        robot = self._source.frame_on_grid(self._source.robot_frame())
+        robot = self._source.robot_on_grid()
         if robot is None:
             self._node.get_logger().error(
                 f"{self._name}: not cleared: the robot's pose is unknown"
@@ -139,7 +138,7 @@ class CostmapServices:
         return robot
 
     def _get_costmap(self, request: Any, response: Any) -> Any:
-        grid = self._source.grid()
+        grid = self._source.newest_grid()
         if grid is not None:
             response.map = costmap_message(grid)
         return response
@@ -148,7 +147,7 @@ class CostmapServices:
         """Return the cost (0 … 255) at a point, or the highest under the footprint."""
         pose = Pose2(request.x, request.y, request.theta)
         response.cost = _OUTSIDE
-        grid = self._source.grid()
+        grid = self._source.newest_grid()
         if grid is None or not np.isfinite(pose).all():
             return response
         cells, spec = grid_from_message(grid)
@@ -157,7 +156,7 @@ class CostmapServices:
             return response
         values = costmap_values(cells)
         response.cost = float(values[cell])
-        footprint = self._source.footprint()
+        footprint = self._source.footprint
         if request.use_footprint and footprint is not None:
             under = cells_in_footprint(footprint, pose, spec)
             costs = values[under[:, 0], under[:, 1]]

@@ -29,6 +29,9 @@ NAV2_NODES = {
 }
 """Nav2's nodes, and the node of the stack that does the work of each."""
 
+OnInactive = Callable[[], object]
+"""Called when the state stops being ``active``: drops the goals."""
+
 
 class StageLifecycle(LifecycleNodeMixin):
     """Lifecycle of one of Nav2's nodes, offered by a node of a stage.
@@ -38,11 +41,11 @@ class StageLifecycle(LifecycleNodeMixin):
     Args:
         node: the node of the stage.
         name: a name of :data:`NAV2_NODES`.
-        on_inactive: called when the state stops being ``active``.
+        on_inactive: default: there are no goals to drop.
     """
 
     def __init__(
-        self, node: Node, name: str, on_inactive: Callable[[], object] = lambda: None
+        self, node: Node, name: str, *, on_inactive: OnInactive = lambda: None
     ) -> None:
         assert name in NAV2_NODES, "only Nav2's names are offered"
         self._on_inactive = on_inactive

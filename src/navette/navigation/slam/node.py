@@ -29,7 +29,7 @@ from navette.navigation.slam.messages import planar_scan
 from navette.navigation.slam.params import MAPPING, SlamParams
 from navette.navigation.slam.rendering import MapRenderer
 from navette.navigation.slam.scan_graph import ScanGraph
-from navette.navigation.slam.servers.map_services import MapSession, SlamMapServices
+from navette.navigation.slam.servers.map_services import SlamMapServices
 from navette.navigation.slam.slam import Slam, SlamEstimate
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.attitude import AttitudeTracker
@@ -93,20 +93,9 @@ class SlamNode(StageNode):
         # Programs of Nav2 wait for the node that locates the robot.
         self._lifecycle = StageLifecycle(self, "amcl")
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
-        self._start()
+        self.restart()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
-        session = MapSession(
-            params=lambda: self.params,
-            graph=lambda: self._slam.graph,
-            render=self._render,
-            message=self._map_message,
-            load=self._continue,
-            empty=self._empty,
-            restart=self._start,
-            pause=self._pause,
-            is_paused=lambda: self._is_paused,
-        )
-        self._services = SlamMapServices(self, session)
+        self._services = SlamMapServices(self, self)
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Place the robot in the known map."""
@@ -147,9 +136,9 @@ class SlamNode(StageNode):
 
     def on_time_jump(self) -> None:
         """Begin a new map."""
-        self._start()
+        self.restart()
 
-    def _start(self) -> None:
+    def restart(self) -> None:
         """Begin as the parameters say: the robot stands at its start."""
         params = self.params
         start: Pose2 | None
@@ -163,17 +152,22 @@ class SlamNode(StageNode):
         self._waiting: deque[tuple[int, LaserScan]] = deque(maxlen=_WAITING)
         self._taken_ns = -(10**18)
         self._newest_ns = 0
-        self._is_paused = False
+        self.is_paused = False
         is_mapping = params.mode == MAPPING
         self._set_slam(Slam(params, start, graph=graph, is_mapping=is_mapping))
 
-    def _continue(self, graph: ScanGraph, start: Pose2, is_mapping: bool) -> None:
+    def continue_map(self, graph: ScanGraph, start: Pose2, *, is_mapping: bool) -> None:
         """Continue a map, or localize in it."""
         self._set_slam(Slam(self.params, start, graph=graph, is_mapping=is_mapping))
 
-    def _empty(self) -> None:
+    def empty_map(self) -> None:
         """Begin a new map where the robot is."""
         self._set_slam(self._slam.emptied())
+
+    @property
+    def scan_graph(self) -> ScanGraph:
+        """The present scans and poses."""
+        return self._slam.graph
 
     def _set_slam(self, slam: Slam) -> None:
         self._slam = slam
@@ -181,12 +175,12 @@ class SlamNode(StageNode):
         self._map_keys = 0
         self._status.report(_WAITING_FOR_SCANS, StatusReporter.WARN)
 
-    def _pause(self, is_paused: bool) -> None:
+    def pause(self, is_paused: bool) -> None:
         """Leave scans out, or use them again; the odometry continues the pose."""
-        if is_paused != self._is_paused:
+        if is_paused != self.is_paused:
             text = "paused: scans are left out" if is_paused else "continued"
             self.get_logger().info(text)
-        self._is_paused = is_paused
+        self.is_paused = is_paused
 
     def _use_waiting(self) -> None:
         wait_ns = round(self.params.pose_wait_s * 1e9)
@@ -204,7 +198,7 @@ class SlamNode(StageNode):
                 self.drop_input(topics.LIDAR.name, error)
 
     def _use(self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None) -> None:
-        if self._is_paused:
+        if self.is_paused:
             estimate = self._slam.predicted(odom_T_base)
         else:
             estimate = self._added(stamp_ns, msg, odom_T_base)
@@ -304,12 +298,12 @@ class SlamNode(StageNode):
         if keys == self._map_keys or not self.has_listeners(topics.SLAM_MAP.name):
             return
         self._map_keys = keys
-        self.publish(topics.SLAM_MAP.name, self._map_message())
+        self.publish(topics.SLAM_MAP.name, self.map_message())
 
-    def _render(self) -> OccupancyMap:
+    def render_map(self) -> OccupancyMap:
         cells, spec = self._renderer.render(self._slam.placed_scans())
         return OccupancyMap(cells, spec.resolution, spec.origin)
 
-    def _map_message(self) -> OccupancyGrid:
+    def map_message(self) -> OccupancyGrid:
         cells, spec = self._renderer.render(self._slam.placed_scans())
         return grid_to_message(cells, spec, self.params.map_frame, self._newest_ns)

@@ -26,16 +26,14 @@ class RunProgress:
     sim_time_s: float = 0.0
 
 
+OnProgress = Callable[[RunProgress], None]
+"""Called when the planner's state or goal or the commander changes."""
+
+
 class MonitorNode(Node):
-    """Follow the status of planner and controller.
+    """Follow the status of planner and controller."""
 
-    Args:
-        on_change: called when the planner's state or goal or the commander changes.
-    """
-
-    def __init__(
-        self, *, context: Context, on_change: Callable[[RunProgress], None]
-    ) -> None:
+    def __init__(self, *, context: Context, on_change: OnProgress) -> None:
         super().__init__("monitor", context=context)
         self._on_change = on_change
         self.progress = RunProgress()

@@ -1,10 +1,10 @@
 """Scans of a recording with the odometry at their stamps."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from navette.bags.bag import BagReader, BagTopic, Damage
+from navette.bags.bag import BagReader, BagTopic, OnDamage
 from navette.bags.message_types import Decoder
 from navette.errors import (
     InvalidInputError,
@@ -61,7 +61,7 @@ class RecordedScans:
     Args:
         reader: an open recording.
         source: topics and frames.
-        on_damage: called for each part that cannot be read.
+        on_damage: receives each part that cannot be read.
 
     Raises:
         UnknownNameError: the recording has no such topic, or no scans.
@@ -71,7 +71,8 @@ class RecordedScans:
         self,
         reader: BagReader,
         source: ScanSource,
-        on_damage: Callable[[Damage], None] | None = None,
+        *,
+        on_damage: OnDamage | None = None,
     ) -> None:
         self._reader = reader
         self._on_damage = on_damage

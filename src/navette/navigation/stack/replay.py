@@ -5,7 +5,7 @@ at the recording's time. Timers run, each message is processed completely before
 next, and the wall clock is not used: two replays write the same bytes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,7 @@ from navette.errors import InvalidValueError
 from navette.msgs.topics import TF, TF_STATIC
 from navette.navigation.stack.programs import MakeNode, default_context
 from navette.navigation.stack.recorded_parameters import give_recorded_parameters
+from navette.navigation.stack.scene import ResolvedScene
 from navette.runtime import (
     Context,
     Executor,
@@ -57,8 +58,8 @@ class Replay:
             context meanwhile).
         record: new file for the nodes' outputs.
         overwrite: replace an existing recording.
-        overrides: adds parameters that need not apply to any node (a robot's). Without
-            them, nodes use the recorded values, if available.
+        robot: its parameters apply, as far as the nodes have them. Without a robot,
+            nodes use the recorded values, if available.
         arguments: ROS arguments, such as ``["--ros-args", "-p", "a:=1"]``.
         also: topics to replay although a node publishes or subscribes to them late.
         options: time range of the recording; the topics are chosen here.
@@ -74,7 +75,7 @@ class Replay:
         *,
         record: Path | None = None,
         overwrite: bool = False,
-        overrides: Callable[[ParameterOverrides], None] = lambda overrides: None,
+        robot: ResolvedScene | None = None,
         arguments: Sequence[str] = (),
         also: Sequence[str] = (),
         options: PlayOptions | None = None,
@@ -87,7 +88,8 @@ class Replay:
             making.callback(self.close)
             self._stack.callback(self.context.try_shutdown)
             give_recorded_parameters(self.context.overrides, source)
-            overrides(self.context.overrides)
+            if robot is not None:
+                robot.override_parameters(self.context.overrides)
             given = len(self.context.overrides.sets)
             self.context.init(list(arguments), console_level=LoggingSeverity.WARN)
             with default_context(self.context):

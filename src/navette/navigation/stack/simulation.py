@@ -1,7 +1,7 @@
 """A run of the simulated robot with its navigation, from options to summary."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from navette.navigation.mapping.zones.node import ZonesNode
 from navette.navigation.stack.localization import localization_nodes
 from navette.navigation.stack.localization_params import localization_parameters
 from navette.navigation.stack.methods import method_parameters
-from navette.navigation.stack.monitor import MonitorNode, RunProgress
+from navette.navigation.stack.monitor import MonitorNode, OnProgress, RunProgress
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.pose_error import PoseErrorNode
 from navette.navigation.stack.programs import MakeNode
@@ -56,7 +56,7 @@ class Simulation:
 
     Args:
         options: world, robot, goals, recording, speed.
-        on_change: called when the planner's goal or state changes.
+        on_change: receives the progress of the run.
         scene: a world made in Python (:class:`navette.sim.World`) instead of that of
             the options.
         parameters: node → parameter → value, over those of the robot.
@@ -70,8 +70,8 @@ class Simulation:
     def __init__(
         self,
         options: RunOptions,
-        on_change: Callable[[RunProgress], None] = lambda progress: None,
         *,
+        on_change: OnProgress = lambda progress: None,
         scene: Scene | None = None,
         parameters: Mapping[str, Mapping[str, object]] | None = None,
         replacements: Mapping[str, MakeNode] | None = None,
@@ -143,7 +143,7 @@ class Simulation:
             overrides.add(node, dict(given), "-p")
         return overrides
 
-    def _create_nodes(self, on_change: Callable[[RunProgress], None]) -> None:
+    def _create_nodes(self, on_change: OnProgress) -> None:
         options, context = self.options, self.context
         self.recorder = (
             None

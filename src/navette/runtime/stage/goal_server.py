@@ -1,7 +1,8 @@
 """Action server of a stage with one active goal, as Nav2's SimpleActionServer."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from navette.msgs.known_fields import made
 from navette.runtime.action.goal_states import CancelResponse, GoalEvent, GoalResponse
@@ -43,6 +44,29 @@ def goal_end(
     return GoalEnd(result, failed=code != "NONE")
 
 
+class Activation(Protocol):
+    """State of the owner of action servers: only an active one accepts goals."""
+
+    @property
+    def is_active(self) -> bool: ...
+
+
+def response_of(activation: Activation) -> GoalResponse:
+    """Accept a goal if the owner is active."""
+    return GoalResponse.ACCEPT if activation.is_active else GoalResponse.REJECT
+
+
+class GoalOwner(ABC):
+    """Steps the goals of a :class:`GoalServer`."""
+
+    @abstractmethod
+    def on_goal(self, request: Any) -> None:
+        """Begin an accepted goal."""
+
+    def on_cancel(self) -> None:  # noqa: B027 - most owners poll cancel_requested
+        """Process a client's request to cancel the active goal."""
+
+
 class GoalServer:
     """Action server whose owner steps the goal; a new goal preempts the active one.
 
@@ -54,9 +78,8 @@ class GoalServer:
         node: the node that offers the action.
         action: the action's type.
         name: the action's name.
-        on_goal: called with the request of each accepted goal.
-        accepts: whether goals are accepted now; default: always.
-        on_cancel: called after the client has requested that the goal is cancelled.
+        owner: steps the goals.
+        activation: whether goals are accepted now.
     """
 
     def __init__(
@@ -64,24 +87,20 @@ class GoalServer:
         node: Node,
         action: Any,
         name: str,
-        on_goal: Callable[[Any], None],
         *,
-        accepts: Callable[[], bool] = lambda: True,
-        on_cancel: Callable[[], None] = lambda: None,
+        owner: GoalOwner,
+        activation: Activation,
     ) -> None:
-        self._on_cancel = on_cancel
         self._call_soon = node.context.loop.call_soon
         self._action = action
-        self._on_goal = on_goal
+        self._owner = owner
         self._goal: ServerGoalHandle | None = None
         self._server = ActionServer(
             node,
             action,
             name,
             lambda goal: None,  # goals are stepped by the owner instead
-            goal_callback=lambda goal: (
-                GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT
-            ),
+            goal_callback=lambda goal: response_of(activation),
             handle_accepted_callback=self._accept,
             cancel_callback=self._accept_cancel,
         )
@@ -141,29 +160,11 @@ class GoalServer:
         if not goal.is_cancel_requested:
             goal.update_state(GoalEvent.EXECUTE)
         self._goal = goal
-        self._on_goal(goal.request)
+        self._owner.on_goal(goal.request)
 
     def _accept_cancel(self, goal: ServerGoalHandle) -> CancelResponse:
-        self._call_soon(self._on_cancel, "cancel")
+        self._call_soon(self._owner.on_cancel, "cancel")
         return CancelResponse.ACCEPT
-
-
-def serve_query(
-    node: Node,
-    action: Any,
-    name: str,
-    answer: Callable[[Any], GoalEnd],
-    *,
-    accepts: Callable[[], bool] = lambda: True,
-) -> GoalServer:
-    """Offer an action whose end ``answer(goal)`` computes at once.
-
-    The result is there before a request to cancel could arrive.
-    """
-    server = GoalServer(
-        node, action, name, lambda goal: server.finish(answer(goal)), accepts=accepts
-    )
-    return server
 
 
 class DriveGoalServer(GoalServer):

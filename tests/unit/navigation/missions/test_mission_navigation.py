@@ -24,7 +24,7 @@ def test_the_tree_starts_when_the_pose_is_known_or_after_two_seconds(
     robot, ends = planted.robot, list[NavigationEnd]()
     navigator = TreeNavigator(robot, ())
     robot.here = None
-    navigator.start(Navigation([PoseStamped()], planted.path, ends.append))
+    navigator.start(Navigation([PoseStamped()], planted.path, on_end=ends.append))
     for tick in range(30):
         if tick / 10 >= pose_after_s:
             robot.here = Pose2(0.0, 0.0, 0.0)

@@ -21,23 +21,27 @@ from navette.navigation.behaviors.runner import Behavior, BehaviorEnd, MotionBeh
 from navette.navigation.grids import CollisionCheck
 from navette.runtime.time import Duration
 
+MakeBehavior = Callable[[Any, BehaviorParams, CollisionCheck], Behavior | BehaviorEnd]
+"""Returns the behavior of a goal, or why the goal is refused."""
 
-@dataclass(frozen=True)
+MakeFeedback = Callable[[float], dict[str, Any]]
+"""Returns the feedback's fields from the behavior's progress."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class BehaviorAction:
     """An action of the behavior server.
 
     Attributes:
         action: its type.
         name: its name.
-        behavior: makes the behavior of a goal, or returns why the goal is refused.
-        feedback: makes the feedback's fields from the behavior's progress.
         output: topic of the commands; empty: it commands nothing.
     """
 
     action: Any
     name: str
-    behavior: Callable[[Any, BehaviorParams, CollisionCheck], Behavior | BehaviorEnd]
-    feedback: Callable[[float], dict[str, Any]]
+    behavior: MakeBehavior
+    feedback: MakeFeedback
     output: str = topics.CMD_VEL_NAV.name
 
 
@@ -115,32 +119,35 @@ def _duration(seconds: float) -> Any:
 
 BEHAVIOR_ACTIONS = (
     BehaviorAction(
-        Spin,
-        "spin",
-        _spin,
-        lambda angle: {"angular_distance_traveled": angle},
+        action=Spin,
+        name="spin",
+        behavior=_spin,
+        feedback=lambda angle: {"angular_distance_traveled": angle},
     ),
     BehaviorAction(
-        BackUp, "backup", _back_up, lambda metres: {"distance_traveled": metres}
+        action=BackUp,
+        name="backup",
+        behavior=_back_up,
+        feedback=lambda metres: {"distance_traveled": metres},
     ),
     BehaviorAction(
-        DriveOnHeading,
-        "drive_on_heading",
-        _drive_on_heading,
-        lambda metres: {"distance_traveled": metres},
+        action=DriveOnHeading,
+        name="drive_on_heading",
+        behavior=_drive_on_heading,
+        feedback=lambda metres: {"distance_traveled": metres},
     ),
     BehaviorAction(
-        Wait,
-        "wait",
-        _wait,
-        lambda left_s: {"time_left": _duration(left_s)},
+        action=Wait,
+        name="wait",
+        behavior=_wait,
+        feedback=lambda left_s: {"time_left": _duration(left_s)},
         output="",
     ),
     BehaviorAction(
-        AssistedTeleop,
-        "assisted_teleop",
-        _assisted_teleop,
-        lambda elapsed_s: {"current_teleop_duration": _duration(elapsed_s)},
-        topics.CMD_VEL_ASSISTED.name,
+        action=AssistedTeleop,
+        name="assisted_teleop",
+        behavior=_assisted_teleop,
+        feedback=lambda elapsed_s: {"current_teleop_duration": _duration(elapsed_s)},
+        output=topics.CMD_VEL_ASSISTED.name,
     ),
 )

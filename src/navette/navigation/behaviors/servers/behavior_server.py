@@ -1,8 +1,6 @@
 """Server of one behavior action."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from navette.navigation.behaviors.params import BehaviorParams
 from navette.navigation.behaviors.runner import (
@@ -15,41 +13,50 @@ from navette.navigation.behaviors.runner import (
 from navette.navigation.behaviors.servers.actions import BehaviorAction
 from navette.navigation.grids import CollisionCheck
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import DriveGoalServer, GoalEnd, goal_end
+from navette.runtime.stage.goal_server import (
+    Activation,
+    DriveGoalServer,
+    GoalEnd,
+    GoalOwner,
+    goal_end,
+)
 from navette.runtime.time import Duration
 
 
-@dataclass(frozen=True)
-class BehaviorContext:
-    """What the servers use of the behaviors node.
+class BehaviorHost(Protocol):
+    """The node of the servers."""
 
-    Attributes:
-        params: the present parameters.
-        collision: the collision check with the newest obstacles.
-        begin: called when a server has a new goal, before it is stepped.
-        accepts: whether goals are accepted now.
-    """
+    @property
+    def params(self) -> BehaviorParams:
+        """The present parameters."""
 
-    params: Callable[[], BehaviorParams]
-    collision: Callable[[], CollisionCheck]
-    begin: Callable[["BehaviorServer"], None]
-    accepts: Callable[[], bool]
+    @property
+    def collision(self) -> CollisionCheck:
+        """The collision check with the newest obstacles."""
+
+    def begin(self, server: "BehaviorServer") -> None:
+        """Make the new goal of a server the only one, before it is stepped."""
 
 
-class BehaviorServer:
+class BehaviorServer(GoalOwner):
     """Runs the behavior of the active goal; the node calls :meth:`step`."""
 
     def __init__(
-        self, node: Node, spec: BehaviorAction, context: BehaviorContext
+        self,
+        node: Node,
+        spec: BehaviorAction,
+        *,
+        host: BehaviorHost,
+        activation: Activation,
     ) -> None:
         self.spec = spec
         #: The behavior of the newest goal; None if the goal was refused.
         self.behavior: Behavior | None = None
         self._node = node
-        self._context = context
+        self._host = host
         self._start_ns = 0
         self._goals = DriveGoalServer(
-            node, spec.action, spec.name, self._on_goal, accepts=context.accepts
+            node, spec.action, spec.name, owner=self, activation=activation
         )
 
     @property
@@ -96,11 +103,11 @@ class BehaviorServer:
             self._end(step.end)
         return step.command
 
-    def _on_goal(self, goal: Any) -> None:
+    def on_goal(self, request: Any) -> None:
         self._start_ns = self._now_ns
-        self._context.begin(self)
-        context = self._context
-        made = self.spec.behavior(goal, context.params(), context.collision())
+        host = self._host
+        host.begin(self)
+        made = self.spec.behavior(request, host.params, host.collision)
         if isinstance(made, BehaviorEnd):
             self.behavior = None
             self._end(made)

@@ -1,7 +1,5 @@
 """Nav2's controller server: the action follow_path."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,13 +10,19 @@ from navette.msgs.classes import get_message_class
 from navette.msgs.nav2_msgs.action import FollowPath
 from navette.navigation.control.follow_monitor import FollowMonitor
 from navette.navigation.control.methods import CONTROLLERS
-from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
+from navette.navigation.control.servers.control_host import ControlHost
 from navette.navigation.control.states import ControlState
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import DriveGoalServer, GoalEnd, goal_end
-from navette.runtime.stage.path_messages import Poses, moved, poses_of
+from navette.runtime.stage.goal_server import (
+    Activation,
+    DriveGoalServer,
+    GoalEnd,
+    GoalOwner,
+    goal_end,
+)
+from navette.runtime.stage.path_messages import moved, poses_of
 from navette.runtime.time import ns_to_stamp
 
 # Names of Nav2's default parameters; the empty name selects the only one.
@@ -27,38 +31,17 @@ _GOAL_CHECKERS = ("", "general_goal_checker", "goal_checker")
 _PROGRESS_CHECKERS = ("", "progress_checker")
 
 
-@dataclass(frozen=True)
-class FollowContext:
-    """What the server uses of the control node.
-
-    Attributes:
-        params: the present parameters.
-        frame_on_map: pose of a frame in the map frame; None if unknown.
-        follow: starts to follow poses (N, 3), map, with a steering method; raises
-            InvalidValueError if they are not a path.
-        stop: stops the robot if it follows a path of ``follow``; returns whether it
-            did.
-    """
-
-    params: Callable[[], ControlParams]
-    frame_on_map: Callable[[str], Pose2 | None]
-    follow: Callable[[Poses, str], None]
-    stop: Callable[[], bool]
-
-
-class FollowPathServer:
+class FollowPathServer(GoalOwner):
     """Follows the path of a goal with the follower of the control node.
 
     :meth:`step` is called after each step of the follower.
     """
 
-    def __init__(
-        self, node: Node, context: FollowContext, accepts: Callable[[], bool]
-    ) -> None:
+    def __init__(self, node: Node, host: ControlHost, activation: Activation) -> None:
         self._node = node
-        self._context = context
+        self._host = host
         self._goals = DriveGoalServer(
-            node, FollowPath, "follow_path", self._on_goal, accepts=accepts
+            node, FollowPath, "follow_path", owner=self, activation=activation
         )
         self._monitor: FollowMonitor | None = None
         self._stepped_ns = 0
@@ -106,7 +89,7 @@ class FollowPathServer:
             kind: Any = get_message_class("nav2_msgs/msg/TrackingFeedback")
             feedback = kind(**fields, remaining_path_length=left_m)
             feedback.header.stamp = ns_to_stamp(self._now_ns)
-            feedback.header.frame_id = self._context.params().map_frame
+            feedback.header.frame_id = self._host.params.map_frame
             return {"tracking_feedback": feedback}
         return fields
 
@@ -134,26 +117,28 @@ class FollowPathServer:
             if failure is not None:
                 self._fail(*failure)
 
-    def _on_goal(self, goal: Any) -> None:
+    def on_goal(self, request: Any) -> None:
         self._stepped_ns = self._now_ns
-        self._monitor = FollowMonitor(self._context.params(), self._stepped_ns)
-        unknown = _unknown_plugin(goal)
+        self._monitor = FollowMonitor(self._host.params, self._stepped_ns)
+        unknown = _unknown_plugin(request)
         if unknown is not None:
             self._fail(*unknown)
             return
-        frame_id = goal.path.header.frame_id or self._context.params().map_frame
-        map_T_frame = self._context.frame_on_map(frame_id)
+        frame_id = request.path.header.frame_id or self._host.params.map_frame
+        map_T_frame = self._host.frame_on_map(frame_id)
         if map_T_frame is None:
             text = f"path in unknown frame {frame_id!r}; expected a frame on /tf"
             self._fail("TF_ERROR", text)
             return
-        poses = poses_of(goal.path)
+        poses = poses_of(request.path)
         if len(poses) == 0 or not (np.abs(poses) <= FARTHEST).all():
             self._fail("INVALID_PATH", "the path is empty or not finite")
             return
-        method = goal.controller_id if goal.controller_id in (*CONTROLLERS,) else ""
+        method = request.controller_id
+        if method not in CONTROLLERS:
+            method = ""
         try:
-            self._context.follow(moved(poses, map_T_frame), method)
+            self._host.follow_goal(moved(poses, map_T_frame), method)
         except InvalidValueError as error:
             self._fail("INVALID_PATH", str(error))
 
@@ -163,7 +148,7 @@ class FollowPathServer:
 
     def _end(self, end: GoalEnd) -> None:
         """Stop the robot; the result follows when it is at rest."""
-        has_moved = self._context.stop()
+        has_moved = self._host.stop_goal()
         self._goals.end_at_rest(end, self._now_ns, has_moved=has_moved)
 
     @property

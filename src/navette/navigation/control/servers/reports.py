@@ -9,8 +9,9 @@ from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState
 from navette.msgs.std_msgs.msg import Header
-from navette.navigation.control.explanations import EXPLAINED, Situation, explain
+from navette.navigation.control.explanations import EXPLAINED, explain
 from navette.navigation.control.records import FollowerOutput, Rollouts
+from navette.navigation.control.servers.control_host import ControlHost
 from navette.navigation.control.servers.rollout_markers import rollout_markers
 from navette.navigation.control.states import ControlState, LimitedBy
 from navette.runtime.stage.stage_node import StageNode
@@ -32,15 +33,10 @@ _WARNINGS = (
 
 
 class ControlReports:
-    """Status, collision check and footprint on topics; explanations in the log.
+    """Status, collision check and footprint on topics; explanations in the log."""
 
-    Args:
-        node: the node ``control``.
-        situation: what an explanation of a stop requires.
-    """
-
-    def __init__(self, node: StageNode, situation: Callable[[], Situation]) -> None:
-        self._node, self._situation = node, situation
+    def __init__(self, node: StageNode, host: ControlHost) -> None:
+        self._node, self._host = node, host
         self._status = StatusReporter(node, topics.CONTROL_STATUS.name)
         self._steps_left = 0
         self._reported = (ControlState.IDLE, LimitedBy.NONE)
@@ -122,7 +118,7 @@ class ControlReports:
         is_new = last_ns is None or not 0 <= now_ns - last_ns < _EXPLAIN_PERIOD_NS
         if state not in EXPLAINED or not (lasts and is_new):
             return
-        text = explain(state, self._situation(), self._node.params)
+        text = explain(state, self._host.situation(), self._node.params)
         if text:
             self._explained_ns[state] = now_ns
             self._node.get_logger().warning(f"{state}: {text}")

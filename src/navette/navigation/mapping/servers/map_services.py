@@ -1,9 +1,7 @@
 """Nav2's map_server and map_saver: load, get and save a map."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,21 +27,21 @@ _SAVE_TIMEOUT_S = 6.0  # for the message of another topic; slam publishes every 
 _FREE_THRESHOLD, _OCCUPIED_THRESHOLD = 0.25, 0.65  # of map_saver
 
 
-@dataclass(frozen=True)
-class MapStore:
-    """The map behind the services.
+class MapStore(Protocol):
+    """The node whose map the services load and save."""
 
-    Attributes:
-        topics: full names of the topics on which it is published.
-        newest: the newest published map; None before the first.
-        load: replaces the map and publishes it.
-        is_probability: whether values of 1 … 99 are probabilities, not costs.
-    """
+    def map_topics(self) -> tuple[str, ...]:
+        """Return the full names of the topics on which the map is published."""
 
-    topics: Callable[[], tuple[str, ...]]
-    newest: Callable[[], OccupancyGrid | None]
-    load: Callable[[NDArray[np.int8], GridSpec], None]
-    is_probability: Callable[[], bool]
+    def newest_grid(self) -> OccupancyGrid:
+        """Return the map as it was last published, or updated."""
+
+    def load_map(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
+        """Replace the map and publish it."""
+
+    @property
+    def is_probability_map(self) -> bool:
+        """Whether values of 1 … 99 are probabilities, not costs."""
 
 
 class MapServices:
@@ -75,18 +73,14 @@ class MapServices:
         except (FileFormatError, InvalidValueError) as error:
             self._error(f"map not loaded: {error}")
             return response
-        self._store.load(cells, spec)
-        newest = self._store.newest()
-        assert newest is not None, "a loaded map is published"
-        response.map = newest
+        self._store.load_map(cells, spec)
+        response.map = self._store.newest_grid()
         response.result = response.RESULT_SUCCESS
         self._node.get_logger().info(f"map loaded: {path}, {width} x {height} cells")
         return response
 
     def _get(self, request: Any, response: Any) -> Any:
-        newest = self._store.newest()
-        if newest is not None:
-            response.map = newest
+        response.map = self._store.newest_grid()
         return response
 
     async def _save(self, request: Any, response: Any) -> Any:
@@ -103,7 +97,7 @@ class MapServices:
         mode = request.map_mode or "trinary"
         try:
             cells, spec = grid_from_message(grid)
-            if own and mode == "trinary" and not self._store.is_probability():
+            if own and mode == "trinary" and not self._store.is_probability_map:
                 # Costs below that of an obstacle are of free cells.
                 cells = np.where((cells > FREE) & (cells < LETHAL), FREE, cells)
             written = write_occupancy_map(
@@ -124,8 +118,8 @@ class MapServices:
     async def _grid(self, topic: str) -> tuple[OccupancyGrid | None, bool]:
         """Return the newest map of a topic, and whether it is the own one."""
         name = self._node.resolve_topic_name(topic or "map")
-        if name in self._store.topics():
-            return self._store.newest(), True
+        if name in self._store.map_topics():
+            return self._store.newest_grid(), True
         arrived: Future[OccupancyGrid | None] = Future()
 
         def end(message: OccupancyGrid | None) -> None:

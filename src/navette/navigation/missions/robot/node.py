@@ -102,7 +102,7 @@ class _ActionCall:
 
     def _end(self, how: str, message: Any = None, reason: str = "") -> None:
         self.result = CallResult(how, message, reason)
-        self._robot.on_event()
+        self._robot.on_call_end()
 
 
 class _ServiceCall:
@@ -137,7 +137,11 @@ class _ServiceCall:
 
     def _end(self, result: CallResult) -> None:
         self.result = result
-        self._robot.on_event()
+        self._robot.on_call_end()
+
+
+OnCallEnd = Callable[[], None]
+"""Called when a call of an action or a service ends, to tick the tree."""
 
 
 class NodeRobot:
@@ -146,14 +150,13 @@ class NodeRobot:
     Args:
         node: publishes on ``topics.PLANNER_GOAL`` and the other outputs used here.
         tracker: the robot's pose.
-        on_event: called when a call ends, to tick the tree.
     """
 
     def __init__(
-        self, node: StageNode, tracker: PoseTracker, on_event: Callable[[], None]
+        self, node: StageNode, tracker: PoseTracker, *, on_call_end: OnCallEnd
     ) -> None:
         self._node, self.tracker = node, tracker
-        self.on_event = on_event
+        self.on_call_end = on_call_end
         self.trail = DrivenTrail()
         self._calls: list[_ActionCall | _ServiceCall] = []
         self._clients: dict[tuple[str, str], Any] = {}
@@ -196,7 +199,7 @@ class NodeRobot:
         """Publish the goal for the planner; its status answers."""
         if self._goal is not None:
             self._goal.supersede()
-        self._goal = PlannerGoal(goal, self._report, self.stop_planner)
+        self._goal = PlannerGoal(goal, self._report, stop_planner=self.stop_planner)
         self._node.publish(topics.PLANNER_GOAL.name, goal)
         if repr(goal) != self._from_public:
             self._publish_for_others(goal)

@@ -18,6 +18,10 @@ _NEAR_M = 0.5
 _REST_NS = 2_000_000_000
 
 
+StopPlanner = Callable[[], None]
+"""Makes the planner drop its goal."""
+
+
 class PlannerGoal:
     """A :class:`ServerCall` that is answered by the planner's status.
 
@@ -27,14 +31,17 @@ class PlannerGoal:
     Args:
         goal: pose; an orientation of zeros means any heading.
         last_report: newest status before the goal was sent.
-        stop: makes the planner drop the goal.
     """
 
     def __init__(
-        self, goal: PoseStamped, last_report: PlannerReport, stop: Callable[[], None]
+        self,
+        goal: PoseStamped,
+        last_report: PlannerReport,
+        *,
+        stop_planner: StopPlanner,
     ) -> None:
         self.goal = goal
-        self._stop = stop
+        self._stop_planner = stop_planner
         self._filter = StatusFilter(last_report)
         self._result: CallResult | None = None
         self._names_results = False
@@ -52,7 +59,7 @@ class PlannerGoal:
         """Make the planner drop the goal."""
         if self._result is None:
             self._result = CallResult(CANCELED)
-            self._stop()
+            self._stop_planner()
 
     def supersede(self) -> None:
         """End without stopping the planner: the next goal replaces this one there."""

@@ -6,7 +6,7 @@ as aborted.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +37,9 @@ from navette.runtime.action import (
     ActionClient,
     ActionServer,
     CancelResponse,
-    GoalResponse,
 )
 from navette.runtime.future import Future
+from navette.runtime.stage.goal_server import Activation, response_of
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.time import ns_to_stamp
 
@@ -59,7 +59,8 @@ class NavigationServers:
         node: StageNode,
         robot: NodeRobot,
         navigator: TreeNavigator,
-        accepts: Callable[[], bool],
+        *,
+        activation: Activation,
     ) -> None:
         self._node, self._robot, self._navigator = node, robot, navigator
         self._running: dict[bytes, tuple[Any, Navigation]] = {}  # with its handle
@@ -73,9 +74,7 @@ class NavigationServers:
                 name,
                 execute_callback=execute,
                 cancel_callback=cancel,
-                goal_callback=lambda goal: (
-                    GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT
-                ),
+                goal_callback=lambda goal: response_of(activation),
             )
             for action, name, execute, cancel in (
                 (NavigateToPose, "navigate_to_pose", self._to_pose, self._on_cancel),
@@ -168,7 +167,7 @@ class NavigationServers:
             handle.canceled()
             return
         ended: Future[NavigationEnd] = Future()
-        navigation = Navigation(goals, tree, ended.set_result, through)
+        navigation = Navigation(goals, tree, on_end=ended.set_result, through=through)
         try:
             self._navigator.start(navigation)
         except FileFormatError as error:
@@ -179,7 +178,7 @@ class NavigationServers:
             return
         key = bytes(handle.goal_id.uuid)
         self._running[key] = handle, navigation
-        self._robot.on_event()
+        self._robot.on_call_end()
         end = await ended
         assert end is not None, "a navigation ends with a result"
         self._ends[key] = end

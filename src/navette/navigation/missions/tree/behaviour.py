@@ -4,17 +4,16 @@ BehaviorTree.CPP's IDLE is py_trees' INVALID: a node in this state starts from t
 beginning at its next tick.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from navette.errors import FileFormatError
 from navette.navigation.missions.tree.blackboard import TreeBlackboard
 from navette.navigation.missions.tree.ports import Port, entry_of
 from navette.navigation.missions.tree.robot_access import RobotAccess
+from navette.sim.xml_tree import XmlNode
 
 IDLE, RUNNING = Status.INVALID, Status.RUNNING
 SUCCESS, FAILURE = Status.SUCCESS, Status.FAILURE
@@ -28,7 +27,7 @@ class NodeSetup:
     Attributes:
         name: that of the XML, or the tag.
         attributes: ports as written.
-        error: makes an error that names file, line and element.
+        element: the element of the file, for errors that name it and its line.
     """
 
     tag: str
@@ -37,7 +36,7 @@ class NodeSetup:
     children: list[Behaviour]
     blackboard: TreeBlackboard
     robot: RobotAccess
-    error: Callable[[str], FileFormatError]
+    element: XmlNode
     uid: int = 0
     line: int = 0
     extra: dict[str, Any] = field(default_factory=dict)
@@ -58,7 +57,7 @@ class TreeNode(Behaviour):
         """Store ports and accesses; called by the kinds' constructors."""
         self.tag, self.uid = setup.tag, setup.uid
         self._attributes = setup.attributes
-        self._error = setup.error
+        self._element = setup.element
         self.blackboard, self.robot = setup.blackboard, setup.robot
 
     def input(self, name: str) -> Any:
@@ -70,7 +69,7 @@ class TreeNode(Behaviour):
         try:
             return self.PORTS[name].read(self._attributes.get(name), self.blackboard)
         except ValueError as error:
-            raise self._error(f"port {name!r}: {error}") from None
+            raise self._element.error(f"port {name!r}: {error}") from None
 
     def output(self, name: str, value: Any) -> None:
         """Write an output port, if it is connected."""

@@ -11,6 +11,10 @@ from navette.navigation.missions.tree.blackboard import TreeBlackboard
 _ENTRY = re.compile(r"\{\s*([^{}\s]*)\s*\}")
 
 
+ParsePort = Callable[[str], Any]
+"""Converts the literal of a port; raises ValueError."""
+
+
 def parse_text(text: str) -> str:
     return text
 
@@ -66,7 +70,7 @@ def parse_message(text: str) -> Any:
     raise ValueError(f"{text!r}: expected a blackboard entry, as {{name}}")
 
 
-KINDS: dict[Callable[[str], Any], str] = {
+KINDS: dict[ParsePort, str] = {
     parse_text: "text",
     parse_float: "number",
     parse_int: "whole number",
@@ -86,14 +90,13 @@ class Port:
     """A port of a kind of node.
 
     Attributes:
-        parse: converts a literal; raises ValueError.
         default: literal of an input that is not given; None: no value.
         required: whether it must be given.
         output: whether the node writes it.
         entry: blackboard entry that is read if the port is not given.
     """
 
-    parse: Callable[[str], Any] = parse_text
+    parse: ParsePort = parse_text
     default: str | None = None
     required: bool = False
     output: bool = False

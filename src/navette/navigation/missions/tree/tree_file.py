@@ -179,7 +179,7 @@ class _Builder:
             children=list(children),
             blackboard=blackboard,
             robot=self.robot,
-            error=element.error,
+            element=element,
             uid=uid,
         )
         return kind(setup)
@@ -208,7 +208,7 @@ class _Builder:
             children=[self.build(self.file.trees[name], inner)],
             blackboard=blackboard,
             robot=self.robot,
-            error=element.error,
+            element=element,
             uid=uid,
         )
         return KINDS["SubTree"](setup)

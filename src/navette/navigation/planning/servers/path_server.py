@@ -4,8 +4,7 @@ The requests are answered from the newest map. They have no effect on the goal t
 being driven. A request that is cancelled ends at once, also while its path is computed.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,28 +17,33 @@ from navette.msgs.nav2_msgs.srv import IsPathValid
 from navette.msgs.nav_msgs.msg import Path
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.outcome import Outcome
-from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_queries import (
     PlannedRoute,
     blocked_poses,
     plan_through,
 )
-from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
+from navette.navigation.planning.servers.planning_host import (
+    PlanningHost,
+    path_on_map,
+)
 from navette.navigation.servers.distributions import poses_in
 from navette.runtime import Stopwatch
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import GoalEnd, GoalServer, goal_end
+from navette.runtime.stage.goal_server import (
+    Activation,
+    GoalEnd,
+    GoalOwner,
+    GoalServer,
+    goal_end,
+)
 from navette.runtime.stage.path_messages import (
     has_heading,
-    moved,
     path_message,
     pose_of,
-    poses_of,
 )
 from navette.runtime.time import Duration
-from navette.runtime.worker import Worker
 
 DEFAULT_PLANNER = "GridBased"
 """Name of the configured planner, as in Nav2's default parameters."""
@@ -54,38 +58,6 @@ _ERRORS = {
     Outcome.SEARCH_LIMIT: "TIMEOUT",
     Outcome.METHOD_FAILED: "UNKNOWN",
 }
-
-
-@dataclass(frozen=True)
-class PlanningContext:
-    """What the servers of the planner use of its node.
-
-    Attributes:
-        params: the present parameters.
-        planner: planner on the newest map; None before the first.
-        robot: pose of the robot; None if unknown or stale.
-        frame_on_map: pose of a frame in the map frame; None if unknown.
-        publish_plan: publishes a planned path.
-        worker: computes paths.
-    """
-
-    params: Callable[[], PlannerParams]
-    planner: Callable[[], Planner | None]
-    robot: Callable[[], Pose2 | None]
-    frame_on_map: Callable[[str], Pose2 | None]
-    publish_plan: Callable[[Path], None]
-    worker: Worker
-
-    def path(self, msg: Path) -> Poses | None:
-        """Return the poses (N, 3) of a path in the map frame.
-
-        None: the frame is unknown, or a value is not finite or out of range.
-        """
-        map_T_frame = self.frame_on_map(msg.header.frame_id or self.params().map_frame)
-        poses = poses_of(msg)
-        if map_T_frame is None or not (np.abs(poses) <= FARTHEST).all():
-            return None
-        return moved(poses, map_T_frame)
 
 
 class _RequestError(Exception):
@@ -107,50 +79,23 @@ class _PathRequest(NamedTuple):
 class PathServer:
     """The actions that compute paths, and the service that checks one."""
 
-    def __init__(
-        self, node: Node, context: PlanningContext, accepts: Callable[[], bool]
-    ) -> None:
-        self._context = context
-        self._node = node
-        self._serve(
-            ComputePathToPose,
-            "compute_path_to_pose",
-            lambda goal: [*getattr(goal, "viapoints", ()), goal.goal],
-            accepts,
-        )
-        self._serve(
-            ComputePathThroughPoses,
-            "compute_path_through_poses",
-            lambda goal: poses_in(goal.goals),
-            accepts,
-        )
+    def __init__(self, node: Node, host: PlanningHost, activation: Activation) -> None:
+        self._host = host
+        self.node = node
+        for action, name in (
+            (ComputePathToPose, "compute_path_to_pose"),
+            (ComputePathThroughPoses, "compute_path_through_poses"),
+        ):
+            _PathAction(self, action, name, activation)
         node.create_service(IsPathValid, "is_path_valid", self._check_path)
 
-    def _serve(
-        self,
-        action: Any,
-        name: str,
-        goals_of: Callable[[Any], list[PoseStamped]],
-        accepts: Callable[[], bool],
-    ) -> None:
-        server = GoalServer(
-            self._node,
-            action,
-            name,
-            lambda goal: self._compute(server, action, goal, goals_of(goal)),
-            accepts=accepts,
-            on_cancel=lambda: server.end(goal_end(action)),
-        )
-
-    def _compute(
-        self, server: GoalServer, action: Any, goal: Any, goals: list[PoseStamped]
-    ) -> None:
+    def compute(self, server: GoalServer, action: Any, goal: Any) -> None:
         """Compute the result in the worker, unless the goal ends before."""
         timer = Stopwatch()
         active = server.goal
 
-        map_frame = self._context.params().map_frame
-        now_ns = self._node.get_clock().now().nanoseconds
+        map_frame = self._host.params.map_frame
+        now_ns = self.node.get_clock().now().nanoseconds
 
         def compute() -> tuple[PlannedRoute, Path]:
             route = plan_through(*request)
@@ -164,26 +109,26 @@ class PathServer:
                 server.end(self._refused(action, error))
                 return
             planning_time = Duration(seconds=timer.elapsed_s).to_msg()
-            self._context.publish_plan(path)
+            self._host.publish_plan(path)
             server.end(goal_end(action, path=path, planning_time=planning_time))
 
         try:
-            request = self._request(goal, goals)
+            request = self._request(goal)
         except _RequestError as error:
             server.end(self._refused(action, error))
             return
-        self._context.worker.run(
+        self._host.worker.run(
             compute,
             finish,
             is_dropped=lambda: server.goal is not active,
         )
 
     def _refused(self, action: Any, error: _RequestError) -> GoalEnd:
-        self._node.get_logger().warning(f"path request: {error.code}: {error}")
+        self.node.get_logger().warning(f"path request: {error.code}: {error}")
         return goal_end(action, error.code, str(error))
 
-    def _request(self, goal: Any, goals: list[PoseStamped]) -> _PathRequest:
-        planner = self._planner(goal.planner_id)
+    def _request(self, goal: Any) -> _PathRequest:
+        planner, goals = self._planner(goal.planner_id), _goals_of(goal)
         if not goals:
             raise _RequestError("NO_VIAPOINTS_GIVEN", "no goals given")
         start = self._on_map(goal.start, "start") if goal.use_start else self._robot()
@@ -191,14 +136,14 @@ class PathServer:
         return _PathRequest(planner.copy(), start, targets)
 
     def _planner(self, planner_id: str) -> Planner:
-        params = self._context.params()
+        params = self._host.params
         if planner_id not in ("", DEFAULT_PLANNER, params.method, *PLANNERS):
             known = ", ".join((DEFAULT_PLANNER, *PLANNERS))
             raise _RequestError(
                 "INVALID_PLANNER",
                 f"planner_id {planner_id!r} is unknown; known: {known}",
             )
-        planner = self._context.planner()
+        planner = self._host.planner_with_map()
         if planner is None:
             raise _RequestError("TIMEOUT", "no map has arrived yet")
         if planner_id in ("", DEFAULT_PLANNER, params.method):
@@ -206,7 +151,7 @@ class PathServer:
         return planner.with_params(replace(params, method=planner_id))
 
     def _robot(self) -> Pose2:
-        robot = self._context.robot()
+        robot = self._host.fresh_pose()
         if robot is None:
             raise _RequestError(
                 "TF_ERROR", "the robot's pose is unknown or stale: no recent odometry"
@@ -218,8 +163,8 @@ class PathServer:
         return Goal(x, y, yaw if has_heading(msg.pose) else None)
 
     def _on_map(self, msg: PoseStamped, name: str) -> Pose2:
-        frame_id = msg.header.frame_id or self._context.params().map_frame
-        map_T_frame = self._context.frame_on_map(frame_id)
+        frame_id = msg.header.frame_id or self._host.params.map_frame
+        map_T_frame = self._host.frame_on_map(frame_id)
         if map_T_frame is None:
             raise _RequestError(
                 "TF_ERROR",
@@ -231,15 +176,40 @@ class PathServer:
         return map_T_frame @ pose
 
     def _check_path(self, request: Any, response: Any) -> Any:
-        context = self._context
-        planner, poses = context.planner(), context.path(request.path)
+        host = self._host
+        planner, poses = host.planner_with_map(), path_on_map(host, request.path)
         if planner is None or poses is None or len(poses) == 0:
             return response
-        blocked = blocked_poses(planner, poses, context.robot())
+        blocked = blocked_poses(planner, poses, host.fresh_pose())
         fill(response, success=True)
         response.is_valid = len(blocked) == 0
         response.invalid_pose_indices = blocked.tolist()
         return response
+
+
+class _PathAction(GoalOwner):
+    """One of the actions that compute paths."""
+
+    def __init__(
+        self, path_server: PathServer, action: Any, name: str, activation: Activation
+    ) -> None:
+        self._path_server, self._action = path_server, action
+        self._server = GoalServer(
+            path_server.node, action, name, owner=self, activation=activation
+        )
+
+    def on_goal(self, request: Any) -> None:
+        self._path_server.compute(self._server, self._action, request)
+
+    def on_cancel(self) -> None:
+        self._server.end(goal_end(self._action))
+
+
+def _goals_of(goal: Any) -> list[PoseStamped]:
+    """Return the poses to plan through: those of either action's goal."""
+    if isinstance(goal, ComputePathThroughPoses.Goal):
+        return poses_in(goal.goals)
+    return [*getattr(goal, "viapoints", ()), goal.goal]
 
 
 def _check(route: PlannedRoute, request: _PathRequest) -> None:

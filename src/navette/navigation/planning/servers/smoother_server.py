@@ -1,16 +1,24 @@
 """Nav2's smoother server: the action smooth_path."""
 
-from collections.abc import Callable
 from typing import Any
 
 from navette.msgs.nav2_msgs.action import SmoothPath
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.path_shape import lengths
 from navette.navigation.planning.path_smoothing import smooth_path
-from navette.navigation.planning.servers.path_server import PlanningContext
+from navette.navigation.planning.servers.planning_host import (
+    PlanningHost,
+    path_on_map,
+)
 from navette.runtime import Stopwatch
 from navette.runtime.node import Node
-from navette.runtime.stage.goal_server import GoalEnd, goal_end, serve_query
+from navette.runtime.stage.goal_server import (
+    Activation,
+    GoalEnd,
+    GoalOwner,
+    GoalServer,
+    goal_end,
+)
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.time import Duration
 
@@ -20,21 +28,24 @@ SMOOTHERS = ("", "simple_smoother")
 _MOST_POSES = 100_000
 
 
-class SmootherServer:
-    """Smooths the path of a goal on the newest map."""
+class SmootherServer(GoalOwner):
+    """Smooths the path of a goal on the newest map.
 
-    def __init__(
-        self, node: Node, context: PlanningContext, accepts: Callable[[], bool]
-    ) -> None:
+    A goal ends at once: before a request to cancel it could arrive.
+    """
+
+    def __init__(self, node: Node, host: PlanningHost, activation: Activation) -> None:
         self._node = node
-        self._context = context
-        serve_query(node, SmoothPath, "smooth_path", self._answer, accepts=accepts)
+        self._host = host
+        self._server = GoalServer(
+            node, SmoothPath, "smooth_path", owner=self, activation=activation
+        )
 
-    def _answer(self, goal: Any) -> GoalEnd:
+    def on_goal(self, request: Any) -> None:
         timer = Stopwatch()
-        end = self._smoothed(goal)
+        end = self._smoothed(request)
         end.result.smoothing_duration = Duration(seconds=timer.elapsed_s).to_msg()
-        return end
+        self._server.finish(end)
 
     def _refused(self, code: str, reason: str, **fields: Any) -> GoalEnd:
         self._node.get_logger().warning(f"smooth_path: {reason}")
@@ -44,8 +55,8 @@ class SmootherServer:
         if goal.smoother_id not in SMOOTHERS:
             text = f"smoother_id {goal.smoother_id!r}: unknown; known: {SMOOTHERS[1]}"
             return self._refused("INVALID_SMOOTHER", text)
-        params, planner = self._context.params(), self._context.planner()
-        poses = self._context.path(goal.path)
+        params, planner = self._host.params, self._host.planner_with_map()
+        poses = path_on_map(self._host, goal.path)
         if poses is None or len(poses) == 0:
             text = "the path is empty, not finite, or in an unknown frame"
             return self._refused("INVALID_PATH", text)

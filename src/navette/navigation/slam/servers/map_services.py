@@ -1,9 +1,8 @@
 """Services of the SLAM's map, under Navette's, Nav2's and slam_toolbox's names."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
@@ -23,31 +22,38 @@ _UNNAMED = "map"
 _FAILED = (OSError, ValueError, RuntimeError)
 
 
-@dataclass(frozen=True)
-class MapSession:
-    """The map behind the services.
+class MapSession(Protocol):
+    """The node whose map the services save, load and restart."""
 
-    Attributes:
-        params: the parameters of now.
-        graph: the scans and poses of now.
-        render: returns the map of now.
-        message: returns the same as a message.
-        load: continues a map at a rough pose of the robot; whether the map grows.
-        empty: begins a new map where the robot is.
-        restart: starts as at the start of the node.
-        pause: stops (True) or continues the use of scans.
-        is_paused: whether scans are left out.
-    """
+    @property
+    def params(self) -> SlamParams:
+        """The present parameters."""
 
-    params: Callable[[], SlamParams]
-    graph: Callable[[], ScanGraph]
-    render: Callable[[], OccupancyMap]
-    message: Callable[[], OccupancyGrid]
-    load: Callable[[ScanGraph, Pose2, bool], None]
-    empty: Callable[[], None]
-    restart: Callable[[], None]
-    pause: Callable[[bool], None]
-    is_paused: Callable[[], bool]
+    @property
+    def scan_graph(self) -> ScanGraph:
+        """The present scans and poses."""
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether scans are left out."""
+
+    def render_map(self) -> OccupancyMap:
+        """Return the present map."""
+
+    def map_message(self) -> OccupancyGrid:
+        """Return the present map as a message."""
+
+    def continue_map(self, graph: ScanGraph, start: Pose2, *, is_mapping: bool) -> None:
+        """Continue a map at a rough pose of the robot, or localize in it."""
+
+    def empty_map(self) -> None:
+        """Begin a new map where the robot is."""
+
+    def restart(self) -> None:
+        """Begin as at the start of the node."""
+
+    def pause(self, is_paused: bool) -> None:
+        """Leave scans out, or use them again."""
 
 
 class SlamMapServices:
@@ -69,52 +75,61 @@ class SlamMapServices:
 
     def _save(self, request: Any, response: Any) -> Any:
         """Write MAP.yaml and its image, and MAP.slam to continue the map."""
-        try:
+
+        def write() -> str:
             stem = _stem(request.map_url, "map_url")
             written = self._write_image(
                 stem,
                 mode=request.map_mode or "trinary",
                 image_format=request.image_format.lower(),
             )
-            write_graph(_with_suffix(stem), self._session.graph())
-        except _FAILED as error:
-            self._error(f"map not saved: {error}")
-            return response
-        self._info(f"map saved: {written}, and {stem.name}{SUFFIX}")
-        response.result = True
+            write_graph(_with_suffix(stem), self._session.scan_graph)
+            return f"{written}, and {stem.name}{SUFFIX}"
+
+        response.result = self._saved("map", write)
         return response
 
     def _save_image(self, request: Any, response: Any) -> Any:
         """Write NAME.yaml and its image."""
-        if not len(self._session.graph()):
+        if not len(self._session.scan_graph):
             self._error("map not saved: no scan has arrived")
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
-        try:
-            stem = _stem(request.name.data or _UNNAMED, "name")
-            written = self._write_image(stem)
-        except _FAILED as error:
-            self._error(f"map not saved: {error}")
-            response.result = response.RESULT_UNDEFINED_FAILURE
-            return response
-        self._info(f"map saved: {written}")
-        response.result = response.RESULT_SUCCESS
+        is_saved = self._saved(
+            "map",
+            lambda: self._write_image(_stem(request.name.data or _UNNAMED, "name")),
+        )
+        response.result = (
+            response.RESULT_SUCCESS if is_saved else response.RESULT_UNDEFINED_FAILURE
+        )
         return response
 
     def _serialize(self, request: Any, response: Any) -> Any:
         """Write FILENAME.slam: scans and pose graph."""
-        try:
+
+        def write() -> Path:
             path = _with_suffix(_stem(request.filename, "filename"))
-            if not len(self._session.graph()):
+            if not len(self._session.scan_graph):
                 raise InvalidValueError("no scan has arrived")
-            write_graph(path, self._session.graph())
-        except _FAILED as error:
-            self._error(f"scans not saved: {error}")
-            response.result = response.RESULT_FAILED_TO_WRITE_FILE
-            return response
-        self._info(f"scans saved: {path}")
-        response.result = response.RESULT_SUCCESS
+            write_graph(path, self._session.scan_graph)
+            return path
+
+        response.result = (
+            response.RESULT_SUCCESS
+            if self._saved("scans", write)
+            else response.RESULT_FAILED_TO_WRITE_FILE
+        )
         return response
+
+    def _saved(self, what: str, write: Callable[[], Path | str]) -> bool:
+        """Write files; log their names, or the failure; return whether it worked."""
+        try:
+            written = write()
+        except _FAILED as error:
+            self._error(f"{what} not saved: {error}")
+            return False
+        self._info(f"{what} saved: {written}")
+        return True
 
     def _deserialize(self, request: Any, response: Any) -> Any:
         """Continue the map FILENAME.slam, or localize in it.
@@ -133,7 +148,7 @@ class SlamMapServices:
                     "2 (at initial_pose) or 3 (at initial_pose, the map stays as it is)"
                 )
             path = _with_suffix(_stem(request.filename, "filename"))
-            graph = read_graph(path, self._session.params())
+            graph = read_graph(path, self._session.params)
             start = graph.pose(0)
             if request.match_type != request.START_AT_FIRST_NODE:
                 given = request.initial_pose
@@ -142,20 +157,20 @@ class SlamMapServices:
             self._error(f"map not loaded: {error}")
             return response
         is_mapping = request.match_type != request.LOCALIZE_AT_POSE
-        self._session.load(graph, start, is_mapping)
+        self._session.continue_map(graph, start, is_mapping=is_mapping)
         verb = "continued" if is_mapping else "used for localization"
         self._info(f"{path}: {len(graph)} scans, {verb}")
         return response
 
     def _pause(self, _: Any, response: Any) -> Any:
         """Pause, or continue."""
-        self._session.pause(not self._session.is_paused())
+        self._session.pause(not self._session.is_paused)
         response.status = True
         return response
 
     def _reset(self, request: Any, response: Any) -> Any:
         """Begin a new map where the robot is."""
-        self._session.empty()
+        self._session.empty_map()
         self._session.pause(request.pause_new_measurements)
         response.result = response.RESULT_SUCCESS
         return response
@@ -166,12 +181,12 @@ class SlamMapServices:
         return response
 
     def _get(self, _: Any, response: Any) -> Any:
-        if len(self._session.graph()):
-            response.map = self._session.message()
+        if len(self._session.scan_graph):
+            response.map = self._session.map_message()
         return response
 
     def _write_image(self, stem: Path, **options: Any) -> Path:
-        return write_occupancy_map(stem, self._session.render(), **options)
+        return write_occupancy_map(stem, self._session.render_map(), **options)
 
     def _error(self, text: str) -> None:
         self._node.get_logger().error(text)
