@@ -40,7 +40,7 @@ SUITES = {
 }
 #: In a checkout of ros2/rcl_interfaces: values of messages, for rosidl_runtime_py.
 _FIXTURES = Path("test_msgs/src")
-#: Python packages in place of C++ packages whose components the tests load.
+#: Python packages in place of C++ packages whose components and nodes the tests start.
 STAND_INS = Path(__file__).with_name("stand_ins")
 #: Prints the data files that setup.py gives.
 _DATA_FILES = """
@@ -126,7 +126,7 @@ def run_suite(
         report, prefix = Path(scratch) / "report.xml", Path(scratch) / "install"
         install(packages, prefix)
         # launch_ros starts nodes of packages; launch_testing needs installed files.
-        sources = packages if name == "launch_ros" else []
+        sources = [STAND_INS, *packages] if name == "launch_ros" else []
         found = (each / "pytest.ini" for each in folder.parents)
         settings = next(filter(Path.is_file, found), Path(os.devnull))
         command = [

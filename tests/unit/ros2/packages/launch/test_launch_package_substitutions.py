@@ -149,10 +149,18 @@ def test_invalid_substitutions_are_refused_on_construction(value: object) -> Non
 def test_conditions(context: LaunchContext) -> None:
     assert IfCondition(LaunchConfiguration("sim")).evaluate(context)
     assert not UnlessCondition(LaunchConfiguration("sim")).evaluate(context)
-    assert LaunchConfigurationEquals("name", "burger").evaluate(context)
-    assert LaunchConfigurationNotEquals("name", "waffle").evaluate(context)
-    assert LaunchConfigurationEquals("missing", None).evaluate(context)
     with pytest.raises(
         InvalidConditionExpressionError, match="'burger': expected true"
     ):
         IfCondition(LaunchConfiguration("name")).evaluate(context)
+
+
+def test_conditions_that_ros2_deprecates(context: LaunchContext) -> None:
+    with pytest.warns(UserWarning, match="use IfCondition with EqualsSubstitution"):
+        is_burger = LaunchConfigurationEquals("name", "burger")
+    with pytest.warns(UserWarning, match="LaunchConfigurationNotEquals is deprecated"):
+        is_no_waffle = LaunchConfigurationNotEquals("name", "waffle")
+    with pytest.warns(UserWarning, match="deprecated"):
+        is_missing = LaunchConfigurationEquals("missing", None)
+    for condition in (is_burger, is_no_waffle, is_missing):
+        assert condition.evaluate(context)
