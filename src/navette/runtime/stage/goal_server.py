@@ -56,7 +56,7 @@ def response_of(activation: Activation) -> GoalResponse:
     return GoalResponse.ACCEPT if activation.is_active else GoalResponse.REJECT
 
 
-class GoalOwner(ABC):
+class GoalStepper(ABC):
     """Steps the goals of a :class:`GoalServer`."""
 
     @abstractmethod
@@ -88,7 +88,7 @@ class GoalServer:
         action: Any,
         name: str,
         *,
-        owner: GoalOwner,
+        owner: GoalStepper,
         activation: Activation,
     ) -> None:
         self._call_soon = node.context.loop.call_soon

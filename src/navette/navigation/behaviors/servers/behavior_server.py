@@ -17,7 +17,7 @@ from navette.runtime.stage.goal_server import (
     Activation,
     DriveGoalServer,
     GoalEnd,
-    GoalOwner,
+    GoalStepper,
     goal_end,
 )
 from navette.runtime.time import Duration
@@ -38,7 +38,7 @@ class BehaviorHost(Protocol):
         """Make the new goal of a server the only one, before it is stepped."""
 
 
-class BehaviorServer(GoalOwner):
+class BehaviorServer(GoalStepper):
     """Runs the behavior of the active goal; the node calls :meth:`step`."""
 
     def __init__(

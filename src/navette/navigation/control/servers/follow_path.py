@@ -19,7 +19,7 @@ from navette.runtime.stage.goal_server import (
     Activation,
     DriveGoalServer,
     GoalEnd,
-    GoalOwner,
+    GoalStepper,
     goal_end,
 )
 from navette.runtime.stage.path_messages import moved, poses_of
@@ -31,7 +31,7 @@ _GOAL_CHECKERS = ("", "general_goal_checker", "goal_checker")
 _PROGRESS_CHECKERS = ("", "progress_checker")
 
 
-class FollowPathServer(GoalOwner):
+class FollowPathServer(GoalStepper):
     """Follows the path of a goal with the follower of the control node.
 
     :meth:`step` is called after each step of the follower.

@@ -34,8 +34,8 @@ from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import (
     Activation,
     GoalEnd,
-    GoalOwner,
     GoalServer,
+    GoalStepper,
     goal_end,
 )
 from navette.runtime.stage.path_messages import (
@@ -187,7 +187,7 @@ class PathServer:
         return response
 
 
-class _PathAction(GoalOwner):
+class _PathAction(GoalStepper):
     """One of the actions that compute paths."""
 
     def __init__(

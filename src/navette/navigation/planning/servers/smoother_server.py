@@ -15,8 +15,8 @@ from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import (
     Activation,
     GoalEnd,
-    GoalOwner,
     GoalServer,
+    GoalStepper,
     goal_end,
 )
 from navette.runtime.stage.path_messages import path_message
@@ -28,7 +28,7 @@ SMOOTHERS = ("", "simple_smoother")
 _MOST_POSES = 100_000
 
 
-class SmootherServer(GoalOwner):
+class SmootherServer(GoalStepper):
     """Smooths the path of a goal on the newest map.
 
     A goal ends at once: before a request to cancel it could arrive.
