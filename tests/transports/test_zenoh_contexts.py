@@ -14,6 +14,7 @@ from navette import Context, DurabilityPolicy, HistoryPolicy, Node, QoSProfile
 from navette.errors import InvalidValueError
 from navette.msgs import serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.rcl_interfaces.msg import Log
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import Executor
 from navette.runtime.context import new_graph
@@ -21,7 +22,7 @@ from navette.runtime.qos_events import (
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
 )
-from navette.transports.zenoh import ZenohTransport
+from navette.transports.zenoh import ZenohTransport, own_tokens
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.keys import data_key
 
@@ -214,6 +215,25 @@ def test_events_report_remote_endpoints(network: Network) -> None:
         ),
     )
     network.until(lambda: types == [1] and other == [1], "the other type")
+
+
+def test_a_different_definition_at_the_other_end_is_a_warning(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, there = network.node("here"), network.node("there")
+    texts: list[str] = []
+    here.create_subscription(
+        Log, "/rosout", lambda message: texts.append(message.msg), LATCHED
+    )
+    here.create_subscription(String, "t", lambda m: None, 10)
+    other = f"RIHS01_{'0' * 64}"
+    monkeypatch.setattr(own_tokens, "wire_hash", lambda type_name: other)
+    there.create_publisher(String, "t", 10)
+    network.until(lambda: texts, "the warning")
+    assert texts == [
+        "topic /t: the publisher of /there has a different definition of "
+        f"std_msgs/msg/String ({other}); the endpoints exchange no messages"
+    ]
 
 
 def test_a_node_may_handle_several_types_of_a_topic(network: Network) -> None:

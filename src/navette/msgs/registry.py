@@ -249,15 +249,25 @@ def _found_packages(root: Path, pattern: str = "*") -> set[str]:
     }
 
 
-def _load(name: str) -> None:
+def definition_file(name: str) -> Path | None:
+    """Return the file that defines a type, or of which the type is a part.
+
+    Raises:
+        UnknownNameError: no such package.
+    """
     package, kind, rest = name.split("/")
     stem = rest if kind == "msg" else rest.partition("_")[0]
-    if INTERFACE_NAME.fullmatch(stem):
-        for folder in _folders_of(package):
-            path = folder / kind / f"{stem}.{kind}"
-            if path.is_file():
-                _add_spec(_parse_file(package, path))
-                break
+    if not INTERFACE_NAME.fullmatch(stem):
+        return None
+    paths = (folder / kind / f"{stem}.{kind}" for folder in _folders_of(package))
+    return next(filter(Path.is_file, paths), None)
+
+
+def _load(name: str) -> None:
+    package, kind, _ = name.split("/")
+    path = definition_file(name)
+    if path is not None:
+        _add_spec(_parse_file(package, path))
     if name not in _specs:
         known = [f"{package}/{kind}/{each}" for each in interface_names(package, kind)]
         raise UnknownNameError.of("interface", name, known)

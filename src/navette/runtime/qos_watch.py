@@ -191,11 +191,13 @@ class EndpointWatch:
             loop.call_at(due_ns, check, "type check", local.node_full_name)
 
     def _warn_of_type(self, local: Endpoint, remote: Endpoint) -> None:
-        """Warn, unless the remote node has an endpoint of this type too."""
+        """Warn, unless the remote node has another endpoint, of this type."""
         found = self._context.graph.endpoints(
             remote.topic, kind=remote.kind, node=remote.node_full_name
         )
-        if local.type_name not in {each.type_name for each in found}:
+        refused = remote.type_name, remote.type_hash
+        others = [e for e in found if (e.type_name, e.type_hash) != refused]
+        if local.type_name not in {each.type_name for each in others}:
             self._logger.warning(_type_warning(local, remote))
 
     def _on_lost(self, subscription: Endpoint, count: int) -> None:

@@ -65,6 +65,19 @@ def test_show_with_comments_and_nested_types(workspace: Path) -> None:
     )
 
 
+def test_show_the_definition_that_precedes_navettes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "std_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "std_msgs" / "msg" / "String.msg").write_text(
+        "string data\nint8 tone\n"
+    )
+    monkeypatch.setenv("NAVETTE_INTERFACE_PATH", str(tmp_path / "std_msgs"))
+    assert navette("interface", "show", "std_msgs/String").stdout == (
+        "string data\nint8 tone\n"
+    )
+
+
 def test_show_without_comments(workspace: Path) -> None:
     shown = navette("interface", "show", "verbs_msgs/Ask", "--no-comments").stdout
     assert shown == "Extra what\n\tint32 number 5\n---\nbool ok\n"

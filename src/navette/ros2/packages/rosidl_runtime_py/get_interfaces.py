@@ -5,8 +5,9 @@ from pathlib import Path
 
 from navette import msgs
 from navette.errors import InvalidNameError, UnknownNameError
+from navette.msgs.registry import definition_file
 from navette.ros2.workspace import find_package, find_packages
-from navette.ros2.workspace.package import INTERFACE_KINDS
+from navette.ros2.workspace.package import INTERFACE_KINDS, Origin
 
 _PROVIDED = Path(__file__).parent.parent
 
@@ -52,10 +53,13 @@ def get_interface_path(interface_name: str) -> str:
         raise InvalidNameError(
             f"interface name {interface_name!r}: expected 'package/msg/Name'"
         )
-    share = find_package(parts[0]).share
-    path = Path(share, *parts[1:])
+    package = find_package(parts[0])
+    path = Path(package.share, *parts[1:])
     if not path.suffix:
         path = path.with_name(f"{path.name}.{parts[-2]}")
+    if package.origin is Origin.BUILT_IN and len(parts) == 3:
+        # Folders of NAVETTE_INTERFACE_PATH and of the distribution come first.
+        path = definition_file("/".join((*parts[:2], path.stem))) or path
     if not path.is_file():
         known = get_interfaces([parts[0]]).get(parts[0], [])
         raise UnknownNameError.of(f"interface of {parts[0]}", interface_name, known)
