@@ -221,19 +221,20 @@ def test_a_different_definition_at_the_other_end_is_a_warning(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     here, there = network.node("here"), network.node("there")
-    texts: list[str] = []
+    texts: dict[str, str] = {}
     here.create_subscription(
-        Log, "/rosout", lambda message: texts.append(message.msg), LATCHED
+        Log, "/rosout", lambda log: texts.update({log.name: log.msg}), LATCHED
     )
     here.create_subscription(String, "t", lambda m: None, 10)
     other = f"RIHS01_{'0' * 64}"
     monkeypatch.setattr(own_tokens, "wire_hash", lambda type_name: other)
     there.create_publisher(String, "t", 10)
-    network.until(lambda: texts, "the warning")
-    assert texts == [
+    network.until(lambda: len(texts) == 2, "both warnings")
+    assert texts["here"] == (
         "topic /t: the publisher of /there has a different definition of "
         f"std_msgs/msg/String ({other}); the endpoints exchange no messages"
-    ]
+    )
+    assert "the subscription of /here has a different definition" in texts["there"]
 
 
 def test_a_node_may_handle_several_types_of_a_topic(network: Network) -> None:
