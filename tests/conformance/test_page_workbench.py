@@ -179,6 +179,7 @@ def test_a_page_that_hangs_receives_the_goal_that_was_sent_meanwhile(
 def test_space_stops_wherever_the_focus_is(person: Person) -> None:
     seen = person.seen()
     assert [seen[what] for what in ("panel", "tab", "slider")] == [True] * 3
+    assert seen["ring"] == ["2px", "solid", True]
     assert seen["tool"] == "m"
 
 

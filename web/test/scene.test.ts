@@ -251,6 +251,15 @@ describe("geometry", () => {
     expect(covarianceEllipse(Array.from({ length: 36 }, () => 0), IDENTITY)).toBeNull();
   });
 
+  it("fits beside the bars that cover the scene", () => {
+    const viewing = new Viewing(() => undefined);
+    viewing.fit([0, 0, 10, 10], { width: 400, height: 600, coveredLeft: 62, coveredTop: 0 });
+    const { scale, centre: [x, y] } = viewing.viewpoint;
+    const pixelOf = (metres: number): number => 200 + (metres - x) * scale;
+    expect([pixelOf(0), pixelOf(10)]).toEqual([expect.closeTo(72), expect.closeTo(0.93 * 400)]);
+    expect(y).toBeCloseTo(5);
+  });
+
   it("keeps the place under the pointer while zooming, and the robot while following", () => {
     const viewing = new Viewing(() => undefined);
     viewing.setMode("free");

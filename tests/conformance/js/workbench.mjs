@@ -244,6 +244,16 @@ async function keys() {
   await stops("panel");
   await page.getByRole("tab", { name: "Topics" }).first().click();
   await stops("tab");
+  // The focus is visible on a tab: WCAG's ring of two pixels.
+  const focused = page.locator(".dv-tab:focus-visible");
+  for (let presses = 0; presses < 40 && (await focused.count()) === 0; presses++) await page.keyboard.press("Tab");
+  seen.ring = await focused.evaluate((tab) => {
+    const { outlineWidth, outlineStyle, outlineColor } = getComputedStyle(tab, "::after");
+    const probe = document.createElement("i");
+    probe.style.color = "var(--thread)";
+    document.body.append(probe);
+    return [outlineWidth, outlineStyle, outlineColor === getComputedStyle(probe).color];
+  });
   await page.evaluate(() => navette.open("parameters"));
   await page.locator('input[type="range"]').first().focus();
   await stops("slider");

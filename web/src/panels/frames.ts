@@ -59,10 +59,10 @@ class FramesPanel implements PanelInstance {
   #branch(parent: string, children: ReadonlyMap<string, string[]>, seen: Set<string>): HTMLElement[] {
     return (children.get(parent) ?? []).filter((frame) => !seen.has(frame)).map((frame) => {
       seen.add(frame);
-      const [age, place] = [h("span", { class: "frames-age number" }), h("small", { class: "frames-place number" })];
+      const [age, place] = [h("span", { class: "frames-age number", title: "Age of the newest transform" }), h("small", { class: "frames-place number" })];
       this.#rows.set(frame, { age, place });
       const below = this.#branch(frame, children, seen);
-      return h("li", {}, h("code", { title: frame }, frame), h("div", { class: "frames-row" }, place, age), below.length > 0 && h("ul", {}, ...below));
+      return h("li", {}, h("div", { class: "frames-row" }, h("code", { title: frame }, shortName(frame, parent)), age), place, below.length > 0 && h("ul", {}, ...below));
     });
   }
 
@@ -71,10 +71,17 @@ class FramesPanel implements PanelInstance {
     for (const [frame, { age, place }] of this.#rows) {
       const link = transforms.links.get(frame);
       setText(age, link ? ageOf(link, connection.nowNs) : "root");
-      setText(place, link ? placeText(link) : "");
+      const text = link ? placeText(link) : "";
+      setText(place, text);
+      place.title = text; // deep in the tree of a narrow panel it is cut
       age.classList.toggle("bad", link !== undefined && link.source === "tf" && link.stampNs > 0n && secondsOf(link, connection.nowNs) > 2);
     }
   }
+}
+
+/** A frame that is named after its parent: "…/camera". */
+function shortName(frame: string, parent: string): string {
+  return parent !== "" && frame.startsWith(`${parent}/`) ? `…${frame.slice(parent.length)}` : frame;
 }
 
 function secondsOf({ stampNs }: Link, nowNs: bigint): number {
@@ -83,11 +90,11 @@ function secondsOf({ stampNs }: Link, nowNs: bigint): number {
 
 function ageOf(link: Link, nowNs: bigint): string {
   if (link.source !== "tf") return link.source === "static" ? "static" : "from odometry";
-  return `${secondsOf(link, nowNs).toFixed(1)} s old`;
+  return `${secondsOf(link, nowNs).toFixed(1)} s`;
 }
 
 function placeText({ parent_T_child: { translation: [x, y, z], rotation } }: Link): string {
-  return `${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} m · ${fixed((yawOf(rotation) * 180) / Math.PI, 0)}°`;
+  return `${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} m  ${fixed((yawOf(rotation) * 180) / Math.PI, 0)}°`;
 }
 
 registerPanel({

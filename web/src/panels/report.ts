@@ -40,7 +40,7 @@ class ReportPanel implements PanelInstance {
     this.#page.hidden = true;
     this.#root.addEventListener("click", (event) => {
       const command = event.target instanceof HTMLButtonElement ? event.target.previousElementSibling : null;
-      if (command?.matches("code")) void this.#copy(command.textContent);
+      if (command?.matches("code")) void this.#copy(command);
     });
     this.#endTheme = context.theme.onChange(() => this.#report?.setDark(context.theme.isDark));
   }
@@ -55,12 +55,14 @@ class ReportPanel implements PanelInstance {
   };
 
   /** The report's own script does it elsewhere. */
-  async #copy(command: string): Promise<void> {
+  async #copy(command: Element): Promise<void> {
     try {
-      await navigator.clipboard.writeText(command);
+      await navigator.clipboard.writeText(command.textContent);
       this.context.announce("Command copied");
     } catch {
-      this.context.announce("The browser does not permit copying", "error");
+      // Other machines' pages, without TLS, have no clipboard.
+      getSelection()?.selectAllChildren(command);
+      this.context.announce("The browser does not permit copying. The command is selected: press Ctrl+C.");
     }
   }
 

@@ -7,13 +7,23 @@ const LOWEST_SCALE = 0.5;
 const HIGHEST_SCALE = 1000;
 /** Extent of the smallest part that a fit shows: the first cells of a map are less. */
 const LEAST_M = 3;
-/** Part of the picture that a fit fills. */
-const FILL = 0.86;
+/** Part of the picture that a fit leaves free at each side. */
+const MARGIN = 0.07;
+/** Between what covers the scene and what a fit shows. */
+const MARGIN_PX = 10;
 /** Part of the way to the fitted view that a frame goes. */
 const EASE = 0.2;
 
 /** Fit and follow go on until the view is moved. */
 export type ViewMode = "fit" | "follow" | "free";
+
+/** Size of the scene in pixels, and how much of it bars cover at the left and the top. */
+export interface Room {
+  readonly width: number;
+  readonly height: number;
+  readonly coveredLeft: number;
+  readonly coveredTop: number;
+}
 
 export type Box = readonly [left: number, low: number, right: number, high: number];
 
@@ -74,13 +84,17 @@ export class Viewing {
   }
 
   /** Move towards a view of the box; at once the first time. */
-  fit([left, low, right, high]: Box, width: number, height: number): void {
+  fit([left, low, right, high]: Box, { width, height, coveredLeft, coveredTop }: Room): void {
     const { viewpoint } = this;
     const share = this.#isPlaced ? EASE : 1;
     this.#isPlaced = true;
-    const most = FILL * Math.min(width / Math.max(right - left, LEAST_M), height / Math.max(high - low, LEAST_M));
-    const ratio = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, most)) / viewpoint.scale;
-    const [dx, dy] = [(left + right) / 2 - viewpoint.centre[0], (low + high) / 2 - viewpoint.centre[1]];
+    const [sidePx, endPx] = [MARGIN * width, MARGIN * height];
+    const [leftPx, topPx] = [Math.max(sidePx, coveredLeft + MARGIN_PX), Math.max(endPx, coveredTop + MARGIN_PX)];
+    const most = Math.min((width - leftPx - sidePx) / Math.max(right - left, LEAST_M), (height - topPx - endPx) / Math.max(high - low, LEAST_M));
+    const scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, most));
+    const ratio = scale / viewpoint.scale;
+    const [middleX, middleY] = [(left + right) / 2 - (leftPx - sidePx) / 2 / scale, (low + high) / 2 + (topPx - endPx) / 2 / scale];
+    const [dx, dy] = [middleX - viewpoint.centre[0], middleY - viewpoint.centre[1]];
     if (Math.abs(ratio - 1) < 0.002 && Math.hypot(dx, dy) * viewpoint.scale < 0.5) return;
     viewpoint.scale *= ratio ** share;
     viewpoint.centre = [viewpoint.centre[0] + dx * share, viewpoint.centre[1] + dy * share];

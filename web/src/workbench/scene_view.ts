@@ -38,12 +38,13 @@ export class SceneView {
   ) {
     this.#stick = makeStick(operator);
     this.#stick.hidden = true;
+    const [toolBar, viewBar] = [this.#toolBar(), this.#viewBar()];
     this.element = h(
       "main",
       { class: "scene", "aria-label": "Scene" },
       scene.element,
-      this.#toolBar(),
-      this.#viewBar(),
+      toolBar,
+      viewBar,
       this.#welcome,
       waypointCard(tools, operator),
       h("div", { class: "foot" }, this.#scale, this.#cursor, this.#help),
@@ -51,6 +52,10 @@ export class SceneView {
       h("div", { id: "operate" }, this.#stick, h("div", { class: "row" }, this.#drive, this.#pause, this.#cancel), h("div", { class: "row" }, this.#release, this.#stop)),
     );
     const info = new InfoCard(scene, operator, this.element);
+    const bars = new ResizeObserver(() => {
+      scene.covered = { coveredLeft: toolBar.offsetLeft + toolBar.offsetWidth, coveredTop: viewBar.offsetTop + viewBar.offsetHeight };
+    });
+    [toolBar, viewBar].forEach((bar) => bars.observe(bar));
     tools.inspect.onInspect = (px, py) => info.show(px, py);
     this.#wire();
     tools.onChange(() => this.#drawTools());
