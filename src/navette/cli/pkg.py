@@ -1,5 +1,6 @@
 """``navette pkg``: create and find packages."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,15 +25,45 @@ Found = Annotated[
 ]
 
 
-@pkg.command()
-def create(
-    name: Name,
+@dataclass(frozen=True, kw_only=True)
+class AboutOptions:
+    """Texts of package.xml that the user gave."""
+
+    license_: Annotated[
+        str | None, Option("--license", metavar="NAME", help="With --build-type.")
+    ] = None
+    description: Annotated[
+        str | None, Option(metavar="TEXT", help="With --build-type.")
+    ] = None
+    maintainer_name: Annotated[
+        str | None, Option(metavar="NAME", help="With --build-type.")
+    ] = None
+    maintainer_email: Annotated[
+        str | None, Option(metavar="ADDRESS", help="With --build-type.")
+    ] = None
+
+    def given(self) -> dict[str, str]:
+        """Return them as arguments of PackageAbout."""
+        texts = {
+            "description": self.description,
+            "license": self.license_,
+            "maintainer": self.maintainer_name,
+            "email": self.maintainer_email,
+        }
+        return {key: text for key, text in texts.items() if text is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class CreateOptions:
+    """Options of ``navette pkg create``."""
+
+    name: Name
     msgs: Annotated[
         bool,
         Option(
             "--msgs", help="Also create NAME_msgs for messages, services and actions."
         ),
-    ] = False,
+    ] = False
     node: Annotated[
         str | None,
         Option(
@@ -41,7 +72,7 @@ def create(
             metavar="NODE",
             help="Name of the node. Default: that of the package.",
         ),
-    ] = None,
+    ] = None
     build_type: Annotated[
         str | None,
         Option(
@@ -49,74 +80,71 @@ def create(
             help="ament_python or ament_cmake: the build files only, as ros2 pkg"
             " create writes them.",
         ),
-    ] = None,
-    license_: Annotated[
-        str | None, Option("--license", metavar="NAME", help="With --build-type.")
-    ] = None,
-    description: Annotated[
-        str | None, Option(metavar="TEXT", help="With --build-type.")
-    ] = None,
-    maintainer_name: Annotated[
-        str | None, Option(metavar="NAME", help="With --build-type.")
-    ] = None,
-    maintainer_email: Annotated[
-        str | None, Option(metavar="ADDRESS", help="With --build-type.")
-    ] = None,
+    ] = None
+    about: AboutOptions
     dependencies: Annotated[
         list[str] | None,
         Option(metavar="PACKAGE...", help="Additional dependencies."),
-    ] = None,
+    ] = None
     destination_directory: Annotated[
         Path | None,
         Option(
             metavar="FOLDER",
             help="Parent folder. Default: src/ if it exists, else the current folder.",
         ),
-    ] = None,
-) -> None:
+    ] = None
+
+    @property
+    def folder(self) -> Path:
+        """The parent folder of the package."""
+        here = Path.cwd()
+        own = here / "src" if (here / "src").is_dir() else here
+        return self.destination_directory or own
+
+
+@pkg.command()
+def create(options: CreateOptions) -> None:
     """Create a package with a node, its algorithm, parameters, launch file and tests.
 
     The tests pass (pytest), colcon builds the package on ROS 2, and Navette runs it
     from its folder. A name that ends with _msgs creates a package of interfaces.
     """
-    from navette.ros2.workspace import (
-        PackageAbout,
-        create_bare_package,
-        create_package,
-    )
+    from navette.ros2.workspace import create_package
 
-    here = Path.cwd()
-    folder = destination_directory or (
-        here / "src" if (here / "src").is_dir() else here
-    )
-    needs = dependencies or ()
-    texts = {
-        "description": description,
-        "license": license_,
-        "maintainer": maintainer_name,
-        "email": maintainer_email,
-    }
-    given = {key: text for key, text in texts.items() if text is not None}
-    if build_type is not None:
-        if msgs:
-            raise click.UsageError("--msgs and --build-type exclude each other")
-        about = PackageAbout(**given)
-        bare = create_bare_package(
-            name, folder, build_type, node=node, dependencies=needs, about=about
-        )
-        made = [bare]
-    elif given:
+    if options.build_type is not None:
+        made = [_bare(options, options.build_type)]
+    elif options.about.given():
         raise click.UsageError(
             "--license, --description and --maintainer-… need --build-type"
         )
     else:
         made = create_package(
-            name, folder, node=node, messages=msgs, dependencies=needs
+            options.name,
+            options.folder,
+            node=options.node,
+            messages=options.msgs,
+            dependencies=options.dependencies or (),
         )
     for package in made:
         click.echo(f"made {package}")
         for file in sorted(path for path in package.rglob("*") if path.is_file()):
             click.echo(f"  {file.relative_to(package)}")
+
+
+def _bare(options: CreateOptions, build_type: str) -> Path:
+    """Create the build files only; return the package's folder."""
+    from navette.ros2.workspace import PackageAbout, create_bare_package
+
+    if options.msgs:
+        raise click.UsageError("--msgs and --build-type exclude each other")
+    return create_bare_package(
+        options.name,
+        options.folder,
+        build_type,
+        node=options.node,
+        dependencies=options.dependencies or (),
+        about=PackageAbout(**options.about.given()),
+    )
 
 
 @pkg.command("list")
