@@ -21,7 +21,7 @@ from free_ports import free_endpoint
 from navette.msgs import deserialize, get_interface, serialize
 from navette.msgs.classes import get_message_class
 from navette.msgs.registry import DISTRO_VARIABLE
-from navette.runtime.clock import Stopwatch
+from navette.runtime.clock import Stopwatch, VirtualClock
 from navette.transports import (
     DurabilityPolicy,
     Encoded,
@@ -264,7 +264,7 @@ def until(condition: Any, what: str) -> None:
 @pytest.fixture
 def here(request: pytest.FixtureRequest) -> Iterator[ZenohTransport]:
     settings = Settings(router=(free_endpoint(),))
-    transport = ZenohTransport(DOMAIN, lambda: 5, settings)
+    transport = ZenohTransport(DOMAIN, VirtualClock(5), settings)
     yield transport
     transport.close()
 

@@ -3,6 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lockstep_fakes import Publishers
 from navette.transports import Endpoint, EndpointKind, EndpointQos, Item
 from navette.transports.lockstep import SampleBuffer, Sent, SubscriptionInfo
 
@@ -40,8 +41,8 @@ def run(
         name = f"{topic}{len(subscriptions)}"
         info = SubscriptionInfo(
             topic,
-            lambda item, name=name: got.append((name, item)),
-            lambda remotes=remotes: remotes,
+            Publishers(remotes),
+            sink=lambda item, name=name: got.append((name, item)),
             depth=10,
         )
         subscription = buffer.open(info)

@@ -6,6 +6,7 @@ import zenoh
 from transport_pairs import until
 
 from free_ports import free_endpoint
+from navette.runtime.clock import VirtualClock
 from navette.transports.zenoh import Settings, ZenohTransport
 
 STRATEGY = {"peer": {"to_router": "always", "to_peer": "greater-zid"}}
@@ -13,7 +14,7 @@ STRATEGY = {"peer": {"to_router": "always", "to_peer": "greater-zid"}}
 
 def test_the_peer_opens_the_link_to_navette() -> None:
     router = free_endpoint()
-    near = ZenohTransport(7, lambda: 5, Settings(router=(router,)))
+    near = ZenohTransport(7, VirtualClock(5), Settings(router=(router,)))
     config = zenoh.Config()
     for key, value in {
         "mode": "peer",

@@ -12,6 +12,7 @@ from transport_pairs import LIMIT_S, ZenohPair, until
 from navette.msgs import deserialize, serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.rcl_interfaces.srv import GetParameters
+from navette.runtime.clock import VirtualClock
 from navette.transports import (
     Endpoint,
     EndpointKind,
@@ -55,7 +56,9 @@ class FalseServer:
     def __init__(self, pair: ZenohPair, response: bytes, times: int) -> None:
         self._response, self._times = response, times
         self.asked = 0
-        self.transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
+        self.transport = ZenohTransport(
+            7, VirtualClock(), pair.near_zenoh.session.settings
+        )
         key = data_key(7, "/s", ADD, type_hash(ADD))
         self._queryable: Any = self.transport.session.zenoh.declare_queryable(
             key, zenoh.handlers.Callback(self._answer, indirect=False), complete=True

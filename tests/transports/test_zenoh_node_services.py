@@ -10,6 +10,7 @@ from transport_pairs import ZenohPair, until
 
 from navette.msgs import serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.runtime.clock import VirtualClock
 from navette.transports import Endpoint, EndpointKind, EndpointQos, Reply, Request
 from navette.transports.zenoh import Settings, ZenohTransport
 from navette.transports.zenoh.attachment import Attachment
@@ -70,7 +71,7 @@ def test_a_remote_service_below_the_same_node_name_is_called(
     pair: ZenohPair,
 ) -> None:
     Server(pair.near_zenoh, "/n/a", 1)
-    third = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
+    third = ZenohTransport(7, VirtualClock(), pair.near_zenoh.session.settings)
     end = Endpoint(EndpointKind.SERVICE, "/n/c", ADD, EndpointQos(), "o", "/", b"")
     port: Any = None
 

@@ -15,7 +15,7 @@ from navette.errors import InvalidValueError, NetworkError
 from navette.msgs import serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import Float64, String
-from navette.runtime import Executor
+from navette.runtime import Executor, VirtualClock
 from navette.transports import (
     Encoded,
     Endpoint,
@@ -380,7 +380,7 @@ def test_a_closing_server_refuses_waiting_requests(pair: ZenohPair) -> None:
 
 
 def test_domains_do_not_see_each_other(pair: ZenohPair) -> None:
-    elsewhere = ZenohTransport(8, lambda: 0, pair.near_zenoh.session.settings)
+    elsewhere = ZenohTransport(8, VirtualClock(), pair.near_zenoh.session.settings)
     items, port = subscribe(elsewhere)
     publisher = advertise(pair.near_zenoh)
     pair.settle()
@@ -393,7 +393,7 @@ def test_domains_do_not_see_each_other(pair: ZenohPair) -> None:
 
 def test_closing_twice_leaves_no_thread(pair: ZenohPair) -> None:
     before = set(threading.enumerate())
-    transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
+    transport = ZenohTransport(7, VirtualClock(), pair.near_zenoh.session.settings)
     transport.announce(NodeInfo("n", "/"))
     port = advertise(transport)
     transport.close()
@@ -406,14 +406,16 @@ def test_closing_twice_leaves_no_thread(pair: ZenohPair) -> None:
 
 def test_a_network_that_cannot_be_joined_is_an_error() -> None:
     with pytest.raises(NetworkError, match="cannot join the network"):
-        ZenohTransport(0, lambda: 0, Settings(router=("nonsense/1:1",), listen=("x",)))
+        ZenohTransport(
+            0, VirtualClock(), Settings(router=("nonsense/1:1",), listen=("x",))
+        )
 
 
 def test_the_router_may_be_on_one_of_several_machines() -> None:
     # The first address belongs to no machine (RFC 1122), the second to this one.
     settings = Settings(router=("tcp/0.0.0.1:7447", free_endpoint()))
-    first = ZenohTransport(0, lambda: 0, settings)
-    second = ZenohTransport(0, lambda: 0, settings)
+    first = ZenohTransport(0, VirtualClock(), settings)
+    second = ZenohTransport(0, VirtualClock(), settings)
     assert first.session.serves_as_router
     assert not second.session.serves_as_router
     first.close()
@@ -464,9 +466,9 @@ def test_an_override_that_zenoh_does_not_know_is_an_error() -> None:
 
 def test_a_client_by_override_meets_the_others() -> None:
     router = free_endpoint()
-    near = ZenohTransport(7, lambda: 5, Settings(router=(router,)))
+    near = ZenohTransport(7, VirtualClock(5), Settings(router=(router,)))
     far = ZenohTransport(
-        7, lambda: 6, overridden(f'mode="client";connect/endpoints=["{router}"]')
+        7, VirtualClock(6), overridden(f'mode="client";connect/endpoints=["{router}"]')
     )
     far.announce(NodeInfo("client", "/"))
     until(lambda: NodeInfo("client", "/") in near.remote_nodes(), "the client's node")

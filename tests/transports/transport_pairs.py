@@ -11,7 +11,7 @@ import zenoh
 
 from free_ports import free_endpoint
 from navette.files.runs import PrivateRun
-from navette.runtime.clock import Stopwatch
+from navette.runtime.clock import Stopwatch, VirtualClock
 from navette.transports import (
     Encoded,
     Endpoint,
@@ -94,8 +94,10 @@ class ZenohPair(Pair):
     def __init__(self, **settings: Any) -> None:
         chosen = Settings(router=(free_endpoint(),), **settings)
         self.retransmits = bool(chosen.retransmit)
-        self.near = self.near_zenoh = ZenohTransport(7, lambda: 5, self._of(chosen))
-        self.far = self.far_zenoh = ZenohTransport(7, lambda: 6, self._of(chosen))
+        self.near = self.near_zenoh = ZenohTransport(
+            7, VirtualClock(5), self._of(chosen)
+        )
+        self.far = self.far_zenoh = ZenohTransport(7, VirtualClock(6), self._of(chosen))
         self._count = itertools.count(1)
         self._pongs: list[int] = []
         near, far = self.near_zenoh.session.zenoh, self.far_zenoh.session.zenoh

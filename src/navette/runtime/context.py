@@ -76,7 +76,7 @@ class Context(HasHandle):
         self._leave_graph = self.graph.on_change(self._on_graph_change)
         scope.contexts.add(self)
         self.overrides = ParameterOverrides()
-        self.log = LogHub(lambda: self.loop.clock.now_ns)
+        self.log = LogHub(self.loop)
         self.arguments = RosArguments()
         self.input_checks = SharedInputChecks()
         #: The nodes, oldest first (typed Any because Node imports this module).
@@ -91,7 +91,7 @@ class Context(HasHandle):
         self._on_shutdown: list[Callable[[], object]] = []
         self._lock = threading.RLock()
         self._file_sink: FileSink | None = None
-        self._handler = StdlibHandler(self.log, lambda: self.loop.running_node)
+        self._handler = StdlibHandler(self.log)
 
     @property
     def clock(self) -> ContextClock:
@@ -241,7 +241,7 @@ class Context(HasHandle):
             lock_step.on_end = self.try_shutdown
         membership = join_network(
             self.graph,
-            lambda: self.clock.now_ns,
+            self.loop,
             domain_id=domain_id,
             own_run=None if self._own_run is None else self._own_run.info,
             # Time of its own means a system of its own.

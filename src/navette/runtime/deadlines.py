@@ -6,34 +6,37 @@ from collections.abc import Callable
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
 
+OnExpiry = Callable[[], None]
+"""Called in the loop's thread when a period is over."""
+
 
 class Watchdog:
-    """Calls ``expired`` when :meth:`restart` has not been called for ``period_ns``.
+    """Reports when :meth:`restart` has not been called for ``period_ns``.
 
     The first restart starts the watchdog; after it expired, it expires again every
-    period. :meth:`restart` and :meth:`stop` are callable from any thread; ``expired``
-    runs in the loop's thread.
+    period. :meth:`restart` and :meth:`stop` are callable from any thread.
     """
 
     __slots__ = (
         "_call",
         "_due_ns",
-        "_expired",
         "_lock",
         "_loop",
         "_node",
+        "_on_expiry",
         "_period_ns",
     )
 
     def __init__(
         self,
         period_ns: int,
-        expired: Callable[[], None],
         loop: EventLoop,
         node: str,
+        *,
+        on_expiry: OnExpiry,
     ) -> None:
         self._period_ns = period_ns
-        self._expired = expired
+        self._on_expiry = on_expiry
         self._loop = loop
         self._node = node
         self._due_ns = 0
@@ -69,4 +72,4 @@ class Watchdog:
                 self._due_ns += self._period_ns
             self._arm()
         if is_over:
-            self._expired()
+            self._on_expiry()

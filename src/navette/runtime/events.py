@@ -7,6 +7,9 @@ from typing import Any
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.future import Task
 
+Function = Callable[[], Any]
+"""A function that the loop calls once; a coroutine that it returns is run as a task."""
+
 
 class Entity(ABC):
     """An object whose events the loop runs: a subscription, a timer, a plain call."""
@@ -43,7 +46,7 @@ class Call(Entity):
 
     def __init__(
         self,
-        function: Callable[[], Any],
+        function: Function,
         group: CallbackGroup,
         source: str,
         node: str,

@@ -133,11 +133,15 @@ def _explain(error: UnexpectedInput) -> str:
     return f"unexpected {found} at column {error.column}; expected {', '.join(names)}"
 
 
+GetValue = Callable[[Any], Any]
+"""Returns the value of a term from a message."""
+
+
 class _Term(NamedTuple):
     """A field or a constant; ``kind`` is number, string or bool."""
 
     kind: str
-    get: Callable[[Any], Any]
+    get: GetValue
     text: str
     value: Any = None
 

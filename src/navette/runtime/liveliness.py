@@ -15,12 +15,18 @@ from navette.runtime.loop import EventLoop
 from navette.runtime.qos_events import QoSCountInfo, QoSLivelinessChangedInfo
 from navette.transports import Endpoint
 
+OnLost = Callable[[QoSCountInfo], None]
+"""Called when a publisher's lease expires."""
+
+OnLivelinessChanged = Callable[[QoSLivelinessChangedInfo], None]
+"""Called when the alive publishers of a subscription change."""
+
 
 class Lease:
     """Lease of a publisher; reports its expiry and renewal to the graph.
 
     Args:
-        lost: called when the lease expires; None for a publisher of another process.
+        on_lost: None for a publisher of another process.
     """
 
     def __init__(
@@ -28,7 +34,8 @@ class Lease:
         endpoint: Endpoint,
         graph: Graph,
         loop: EventLoop,
-        lost: Callable[[QoSCountInfo], None] | None = None,
+        *,
+        on_lost: OnLost | None = None,
     ) -> None:
         self._endpoint = endpoint
         self._graph = graph
@@ -36,11 +43,14 @@ class Lease:
         self._until_ns = 0
         # Renewed in any thread, expires in the loop's thread.
         self._lock = threading.Lock()
-        self._lost = lost
+        self._on_lost = on_lost
         self._count = 0
         self._is_alive = False
         self._watchdog = Watchdog(
-            endpoint.qos.lease_ns, self._expire, loop, endpoint.node_full_name
+            endpoint.qos.lease_ns,
+            loop,
+            endpoint.node_full_name,
+            on_expiry=self._expire,
         )
 
     def renew(self) -> None:
@@ -66,18 +76,16 @@ class Lease:
             self._is_alive = False
             self._count += 1
             self._graph.report_liveliness(self._endpoint, alive=False)
-            if self._lost is not None:
-                self._lost(QoSCountInfo(self._count, 1))
+            if self._on_lost is not None:
+                self._on_lost(QoSCountInfo(self._count, 1))
 
 
 class LivelinessView:
     """Alive and expired publishers of one subscription."""
 
-    def __init__(
-        self, graph: Graph, changed: Callable[[QoSLivelinessChangedInfo], None]
-    ) -> None:
+    def __init__(self, graph: Graph, *, on_change: OnLivelinessChanged) -> None:
         self._graph = graph
-        self._changed = changed
+        self._on_change = on_change
         self._alive: set[bytes] = set()
         self._not_alive: set[bytes] = set()
         self._matched: set[bytes] = set()
@@ -107,4 +115,4 @@ class LivelinessView:
             not_alive_count_change=len(self._not_alive) - before[1],
         )
         if info.alive_count_change or info.not_alive_count_change:
-            self._changed(info)
+            self._on_change(info)

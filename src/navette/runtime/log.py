@@ -4,7 +4,7 @@ import logging
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from navette.errors import InvalidValueError
 from navette.runtime.log_levels import LoggingSeverity
@@ -27,15 +27,23 @@ LogSink = Callable[[LogRecord], None]
 """Receiver of log records; the hub calls the sinks in order."""
 
 
+class LogOrigin(Protocol):
+    """Where records come from: the loop that runs the nodes."""
+
+    @property
+    def now_ns(self) -> int:
+        """The stamp of a record."""
+
+    @property
+    def running_node(self) -> str:
+        """Full name of the node whose callback runs, or ""."""
+
+
 class LogHub:
-    """Log levels and sinks of one context.
+    """Log levels and sinks of one context."""
 
-    Args:
-        now_ns: returns the stamp of a record.
-    """
-
-    def __init__(self, now_ns: Callable[[], int]) -> None:
-        self.now_ns = now_ns
+    def __init__(self, origin: LogOrigin) -> None:
+        self.origin = origin
         self.sinks: list[LogSink] = []
         #: Receives the records while there is no sink, if set.
         self.fallback: LogSink | None = None
@@ -186,12 +194,12 @@ class Logger:
             if site.severity != severity:
                 raise ValueError("severity of a filtered log line cannot change")
             clock = filters.get("throttle_time_source_type")
-            now_ns = clock.now().nanoseconds if clock else self._hub.now_ns()
+            now_ns = clock.now().nanoseconds if clock else self._hub.origin.now_ns
             if not site.lets_through(now_ns, filters):
                 return False
         self._hub.emit(
             LogRecord(
-                self._hub.now_ns(),
+                self._hub.origin.now_ns,
                 severity,
                 name,
                 str(message),
@@ -214,29 +222,26 @@ def _check_filters(filters: dict[str, Any]) -> None:
 class StdlibHandler(logging.Handler):
     """Handler that passes records of ``logging.getLogger`` (algorithms) to a hub.
 
-    Args:
-        running_node: returns the full name of the node whose callback runs, or "". The
-            record belongs to that node (``/rosout``, level).
+    A record belongs to the node whose callback runs (``/rosout``, level).
     """
 
-    def __init__(self, hub: LogHub, running_node: Callable[[], str]) -> None:
+    def __init__(self, hub: LogHub) -> None:
         super().__init__()
         self._hub = hub
-        self._running_node = running_node
 
     def emit(self, record: logging.LogRecord) -> None:
         severity = LoggingSeverity(
             min(max(record.levelno // 10 * 10, LoggingSeverity.DEBUG), 50)
         )
         name = record.name
-        node = self._running_node().strip("/").replace("/", ".")
+        node = self._hub.origin.running_node.strip("/").replace("/", ".")
         if node:
             name = f"{node}.{name.rpartition('.')[2]}"
         if severity < self._hub.effective_level(name):
             return
         self._hub.emit(
             LogRecord(
-                self._hub.now_ns(),
+                self._hub.origin.now_ns,
                 severity,
                 name,
                 record.getMessage(),

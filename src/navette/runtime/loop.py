@@ -24,13 +24,17 @@ from navette.runtime.wakeup import new_wakeup
 _TURN_S = 0.005
 
 
+RunCondition = Callable[[], bool]
+"""Whether a run ends; called between two events."""
+
+
 class _RunEnd(NamedTuple):
     """Conditions that end a run, as in :meth:`EventLoop.run`."""
 
     until_ns: int | None = None
-    done: Callable[[], bool] | None = None
+    done: RunCondition | None = None
     limit: int | None = None
-    stop: Callable[[], bool] | None = None
+    stop: RunCondition | None = None
 
 
 class EventLoop:
@@ -129,6 +133,11 @@ class EventLoop:
                 self._turn.notify_all()
 
     @property
+    def now_ns(self) -> int:
+        """Time of the present clock; callable from any thread."""
+        return self.clock.now_ns
+
+    @property
     def running_node(self) -> str:
         """Full name of the node whose callback runs in this thread, or empty."""
         if self._running is None or self.waiting or not self.in_driver_thread:
@@ -194,9 +203,9 @@ class EventLoop:
         self,
         *,
         until_ns: int | None = None,
-        done: Callable[[], bool] | None = None,
+        done: RunCondition | None = None,
         limit: int | None = None,
-        stop: Callable[[], bool] | None = None,
+        stop: RunCondition | None = None,
         calling: bool = False,
     ) -> None:
         """Run events until one of the conditions holds.

@@ -3,7 +3,6 @@
 import logging
 import os
 import socket
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError
@@ -12,6 +11,7 @@ from navette.files.runs import VARIABLE as RUN_VARIABLE
 from navette.runtime.clock import ContextClock, PacedClock, VirtualClock
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock
+from navette.transports.clock import NanosecondClock
 
 _log = logging.getLogger(__name__)
 
@@ -74,7 +74,7 @@ class Membership:
 
 def join_network(
     graph: Graph,
-    now_ns: Callable[[], int],
+    clock: NanosecondClock,
     *,
     domain_id: int | None = None,
     own_run: RunInfo | None = None,
@@ -85,7 +85,7 @@ def join_network(
 
     Args:
         graph: the graph that joins the network.
-        now_ns: returns this process's time.
+        clock: this process's time.
         domain_id: default: that of the run, else of ``ROS_DOMAIN_ID``.
         own_run: the run of this process; None: the run that the program is to join, or
             the shared network (:func:`navette.files.runs.chosen_run`).
@@ -118,12 +118,12 @@ def join_network(
         if run is not None:
             settings = settings.within(run.router, run.new_endpoint())
         if lock_step is None:
-            graph.add_transport(ZenohTransport(domain_id, now_ns, settings))
+            graph.add_transport(ZenohTransport(domain_id, clock, settings))
             return Membership(domain_id, run)
         from navette.transports.zenoh.lockstep import ZenohStepWire
 
         traffic = lock_step.traffic
-        stepped = ZenohTransport(domain_id, now_ns, settings, traffic=traffic)
+        stepped = ZenohTransport(domain_id, clock, settings, traffic=traffic)
         lock_step.join(ZenohStepWire(stepped))
         graph.add_transport(stepped)
         return Membership(domain_id, run)

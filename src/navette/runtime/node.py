@@ -133,7 +133,7 @@ class Node(HasHandle, GraphQueries, NodeParameters):
                 local,
                 parameter_overrides or (),
             ),
-            self._node_publish_changes,
+            on_change=self._node_publish_changes,
             allow_undeclared=allow_undeclared_parameters,
         )
         self._node_topics = NodeTopics(entities, self, self._logger)

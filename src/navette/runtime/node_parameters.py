@@ -1,7 +1,7 @@
 """The parameters of one node: declaration, access and descriptors."""
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from navette.errors import ParameterError
@@ -27,8 +27,8 @@ from navette.runtime.parameter import (
     validate_parameter_name,
 )
 from navette.runtime.parameter_store import (
-    Changes,
     OnCallback,
+    OnChanges,
     ParameterStore,
     PostCallback,
     PreCallback,
@@ -41,7 +41,6 @@ class NodeParameters:
     Args:
         node_name: full name, for error messages.
         overrides: values from files, launch and command line, by parameter name.
-        on_change: called with each change.
         allow_undeclared: whether undeclared parameters can be read and set.
     """
 
@@ -49,13 +48,15 @@ class NodeParameters:
         self,
         node_name: str,
         overrides: Mapping[str, Override],
-        on_change: Callable[[Changes], None],
         *,
+        on_change: OnChanges,
         allow_undeclared: bool,
     ) -> None:
         self._node_full_name = node_name
         self._node_overrides = overrides
-        self._node_store = ParameterStore(on_change, allow_undeclared=allow_undeclared)
+        self._node_store = ParameterStore(
+            on_change=on_change, allow_undeclared=allow_undeclared
+        )
 
     def declare_parameter(
         self,

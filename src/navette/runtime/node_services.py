@@ -44,10 +44,10 @@ class NodeServices:
         service = Service(
             endpoint,
             callback,
-            self._entities.adopt(callback_group),
-            qos_profile,
-            ServiceEvents(endpoint, self._topics),
-            self._entities,
+            callback_group=self._entities.adopt(callback_group),
+            qos_profile=qos_profile,
+            events=ServiceEvents(endpoint, self._topics),
+            entities=self._entities,
             srv_name=srv_name,
             deferred=deferred,
         )
@@ -74,10 +74,10 @@ class NodeServices:
         context = self._entities.context
         client = Client(
             endpoint,
-            self._entities.adopt(callback_group),
-            qos_profile,
-            ServiceEvents(endpoint, self._topics),
-            self._entities,
+            callback_group=self._entities.adopt(callback_group),
+            qos_profile=qos_profile,
+            events=ServiceEvents(endpoint, self._topics),
+            entities=self._entities,
             srv_name=srv_name,
         )
         self._entities.add(client)

@@ -66,7 +66,12 @@ class NodeTopics:
             watch.stop()
             raise
         publisher = publisher_class(
-            msg_type, endpoint, qos, ports, self._entities, watch
+            msg_type,
+            endpoint,
+            qos,
+            ports=ports,
+            entities=self._entities,
+            watch=watch,
         )
         self._entities.add(publisher)
         return publisher
@@ -103,10 +108,10 @@ class NodeTopics:
             msg_type,
             endpoint,
             callback,
-            self._entities.adopt(callback_group),
-            qos,
-            self._entities,
-            watch,
+            callback_group=self._entities.adopt(callback_group),
+            qos_profile=qos,
+            entities=self._entities,
+            watch=watch,
             raw=raw,
             shared=shared,
         )

@@ -27,18 +27,18 @@ PostCallback = Callable[[list[Parameter[Any]]], None]
 Changes = tuple[list[Parameter[Any]], list[Parameter[Any]], list[Parameter[Any]]]
 """New, changed and deleted parameters of one change."""
 
+OnChanges = Callable[[Changes], None]
+"""Called after parameters were declared, set or undeclared."""
+
 
 class ParameterStore:
     """Values and descriptors of a node's parameters.
 
     Args:
-        on_change: called after each change.
         allow_undeclared: whether parameters may be set without a declaration.
     """
 
-    def __init__(
-        self, on_change: Callable[[Changes], None], *, allow_undeclared: bool
-    ) -> None:
+    def __init__(self, *, on_change: OnChanges, allow_undeclared: bool) -> None:
         self.values: dict[str, Parameter[Any]] = {}
         self.descriptors: dict[str, ParameterDescriptor] = {}
         self.pre_callbacks: list[PreCallback] = []

@@ -41,6 +41,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         msg_type: type[MsgT],
         endpoint: Endpoint,
         qos_profile: QoSProfile,
+        *,
         ports: list[PublisherPort],
         entities: NodeEntities,
         watch: EndpointWatch,

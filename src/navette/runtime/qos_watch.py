@@ -124,22 +124,24 @@ class EndpointWatch:
         if self._callbacks.deadline is not None and period_ns < INFINITE_NS:
             self._deadline = Watchdog(
                 period_ns,
-                self._on_deadline,
                 self._context.loop,
                 self._endpoint.node_full_name,
+                on_expiry=self._on_deadline,
             )
 
     def _watch_liveliness(self) -> None:
         graph, loop = self._context.graph, self._context.loop
         if self._endpoint.kind is EndpointKind.SUBSCRIPTION:
             if self._callbacks.liveliness is not None:
-                self._view = LivelinessView(graph, self._notify_liveliness)
+                self._view = LivelinessView(graph, on_change=self._notify_liveliness)
                 self._unsubscribe.append(graph.on_liveliness(self._on_liveliness))
                 self._unsubscribe.append(
                     graph.on_assertion(self._endpoint.topic, self._on_assertion)
                 )
         elif self._endpoint.qos.asserts_itself:
-            self._lease = Lease(self._endpoint, graph, loop, self._notify_liveliness)
+            self._lease = Lease(
+                self._endpoint, graph, loop, on_lost=self._notify_liveliness
+            )
 
     def _notify(
         self, callback: Callable[[Any], Any] | None, info: Any, event: str

@@ -46,11 +46,11 @@ class Service(ServiceEndpoint, Entity):
         self,
         endpoint: Endpoint,
         callback: Callable[[Any, Any], Any],
+        *,
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         events: ServiceEvents,
         entities: NodeEntities,
-        *,
         srv_name: str,
         deferred: bool = False,
     ) -> None:

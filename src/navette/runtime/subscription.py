@@ -96,11 +96,11 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         msg_type: type[MsgT],
         endpoint: Endpoint,
         callback: Callable[..., Any],
+        *,
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         entities: NodeEntities,
         watch: EndpointWatch,
-        *,
         raw: bool = False,
         shared: bool = False,
     ) -> None:

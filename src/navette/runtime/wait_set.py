@@ -41,14 +41,18 @@ class NumberOfEntities:
         return f"<NumberOfEntities({', '.join(map(str, vars(self).values()))})>"
 
 
+OnDue = Callable[[], object]
+"""Called when an entity becomes due."""
+
+
 class WaitSet:
     """Records which of its guard conditions and timers are due.
 
     The set replaces the callback of each entity that is added to it.
     """
 
-    def __init__(self, wake: Callable[[], object]) -> None:
-        self._wake = wake
+    def __init__(self, *, on_due: OnDue) -> None:
+        self._on_due = on_due
         self._counts: dict[str, int] = {}
         self._ready: set[tuple[str, int]] = set()
 
@@ -82,4 +86,4 @@ class WaitSet:
 
     def _mark_due(self, kind: str, index: int) -> None:
         self._ready.add((kind, index))
-        self._wake()
+        self._on_due()

@@ -80,7 +80,7 @@ class WaitableEvents(Entity):
         self._loop = loop
         self._node_name = node_name
         self._is_queued = False
-        self.wait_set = WaitSet(self._queue)
+        self.wait_set = WaitSet(on_due=self._queue)
 
     def run(self) -> Any:
         self._is_queued = False

@@ -77,15 +77,15 @@ class _Daemon:
             # A supervisor that was killed together with its guard.
             end_processes_with(previous["token"])
         self._loop = EventLoop(SystemClock())
-        self._log = LogStore(state, lambda: self._loop.clock.now_ns)
+        self._log = LogStore(state, self._loop)
         self._manager = ProcessManager(hold=[lock])
         self._arguments: dict[str, str] = {}
         self._over = False
         self._linger: Call | None = None
         self._supervisor = Supervisor(
-            self._manager, self._loop, self._log, self._exit_when_idle
+            self._manager, self._loop, self._log, on_idle=self._exit_when_idle
         )
-        self._server = RequestServer(socket, self._loop, self._handle)
+        self._server = RequestServer(socket, self._loop, handler=self._handle)
         guard = self._manager.guard()
         assert guard is not None, "supervisors run on POSIX systems only"
         info = {"pid": os.getpid(), "folder": str(folder), "token": guard.token}

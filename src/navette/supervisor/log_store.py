@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO
 
 from navette.supervisor.service_config import process_label
+from navette.transports.clock import NanosecondClock
 
 FILE_NAME = "log.jsonl"
 _OLD_NAME = "log.1.jsonl"
@@ -43,9 +44,9 @@ class LogStore:
     as soon as there is space again.
     """
 
-    def __init__(self, folder: Path, now_ns: Callable[[], int]) -> None:
+    def __init__(self, folder: Path, clock: NanosecondClock) -> None:
         self._folder = folder
-        self._now_ns = now_ns
+        self._clock = clock
         self._lock = threading.Lock()
         self._file = self._open()
         self._lost = 0
@@ -55,7 +56,7 @@ class LogStore:
         self, service: str, name: str, texts: Iterable[str], *, event: bool = False
     ) -> None:
         """Append lines with the current time."""
-        now_ns = self._now_ns()
+        now_ns = self._clock.now_ns
         lines = [
             LogLine(now_ns, service, name, text[:_MAX_TEXT], event) for text in texts
         ]
@@ -99,15 +100,19 @@ def _encode(line: LogLine) -> bytes:
     return json.dumps(asdict(line)).encode() + b"\n"
 
 
+AcceptLine = Callable[[LogLine], bool]
+"""Whether a reader returns a line."""
+
+
 class LogReader:
     """Reader of the log, also while it is written.
 
     Args:
         folder: of the log; it may not exist yet.
-        accept: which lines to return.
+        accept: default: returns every line.
     """
 
-    def __init__(self, folder: Path, accept: Callable[[LogLine], bool]) -> None:
+    def __init__(self, folder: Path, *, accept: AcceptLine = lambda line: True) -> None:
         self._folder = folder
         self._accept = accept
         self._file: IO[bytes] | None = None

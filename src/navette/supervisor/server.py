@@ -14,6 +14,7 @@ _MAX_BYTES = 16 << 20
 _TIMEOUT_S = 10.0
 
 RequestHandler = Callable[[dict[str, Any]], dict[str, Any]]
+"""Returns the response to a request. Navette's exceptions become error responses."""
 
 
 class RequestServer:
@@ -21,11 +22,10 @@ class RequestServer:
 
     Args:
         path: of the socket; an existing one is replaced.
-        handler: called on the loop with each request; Navette's own exceptions become
-            error responses.
+        handler: called on the loop.
     """
 
-    def __init__(self, path: Path, loop: EventLoop, handler: RequestHandler) -> None:
+    def __init__(self, path: Path, loop: EventLoop, *, handler: RequestHandler) -> None:
         self._path = path
         self._loop = loop
         self._handler = handler

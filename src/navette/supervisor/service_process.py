@@ -23,22 +23,26 @@ READY_VARIABLE = "NAVETTE_READY_FD"
 _READY_TIMEOUT_S = 10.0
 
 
+OnStateChange = Callable[[], None]
+"""Called after every change of a process's state."""
+
+
 class ServiceProcess(ManagedProcess):
     """A managed process of a service.
 
     Args:
         environ: environment that the process inherits.
-        on_change: called after every change of state.
     """
 
     def __init__(
         self,
         spec: ProcessConfig,
         environ: Mapping[str, str],
+        *,
         manager: ProcessManager,
         loop: EventLoop,
         log: LogStore,
-        on_change: Callable[[], None],
+        on_change: OnStateChange,
     ) -> None:
         grace = GracePeriods(spec.stop_timeout_s, spec.stop_timeout_s)
         super().__init__(spec.label, spec.restart, grace, loop)

@@ -131,7 +131,9 @@ def last_output(project: Project, process: ProcessStatus) -> list[str]:
     """Return the last lines that the newest run of a process wrote."""
     reader = LogReader(
         project.state,
-        lambda line: (line.service, line.name) == (process.service, process.name),
+        accept=lambda line: (
+            (line.service, line.name) == (process.service, process.name)
+        ),
     )
     lines = reader.last(200)
     reader.close()

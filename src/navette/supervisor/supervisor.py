@@ -32,19 +32,20 @@ class ManagedService:
         return any(each.is_alive for each in self.processes)
 
 
-class Supervisor:
-    """All services of a project; all methods run on the loop.
+OnIdle = Callable[[], None]
+"""Called whenever no service is left."""
 
-    Args:
-        on_idle: called whenever no service is left.
-    """
+
+class Supervisor:
+    """All services of a project; all methods run on the loop."""
 
     def __init__(
         self,
         manager: ProcessManager,
         loop: EventLoop,
         log: LogStore,
-        on_idle: Callable[[], None],
+        *,
+        on_idle: OnIdle,
     ) -> None:
         self._manager = manager
         self._loop = loop
@@ -126,10 +127,10 @@ class Supervisor:
             ServiceProcess(
                 spec,
                 service.environ,
-                self._manager,
-                self._loop,
-                self._log,
-                self._reconcile_soon,
+                manager=self._manager,
+                loop=self._loop,
+                log=self._log,
+                on_change=self._reconcile_soon,
             )
             for spec in service.spec.processes
         ]

@@ -20,17 +20,23 @@ def age_ns(item: Item) -> int:
     return 0 if abs(age) > _SAME_CLOCK_NS else age
 
 
+LateExpiry = Callable[[], int]
+"""Returns the expiry in ns when the sample is taken: until then it may be unknown."""
+
+OnExpired = Callable[[Endpoint, str], None]
+"""Called with a publisher whose samples have expired on arrival, and the warning."""
+
+
 class Expiring:
     """A message with its expiry, in place of the message of a delivered sample.
 
     Args:
         message: may be an :class:`~navette.transports.encoded.Encoded`.
-        expires_ns: a function if the lifespan is not known yet.
     """
 
     __slots__ = ("expires_ns", "message")
 
-    def __init__(self, message: Any, expires_ns: int | Callable[[], int]) -> None:
+    def __init__(self, message: Any, expires_ns: int | LateExpiry) -> None:
         self.message = message
         self.expires_ns = expires_ns
 
@@ -50,16 +56,13 @@ class Lifespans:
 
     Args:
         publishers: the known publishers by gid; changes meanwhile.
-        warn: called with a publisher whose samples have expired on arrival.
     """
 
     def __init__(
-        self,
-        publishers: Mapping[bytes, Endpoint],
-        warn: Callable[[Endpoint, str], None],
+        self, publishers: Mapping[bytes, Endpoint], *, on_expired: OnExpired
     ) -> None:
         self._publishers = publishers
-        self._warn = warn
+        self._on_expired = on_expired
         self._first_ns: int | None = None
 
     def limited(self, gid: bytes, item: Item) -> Item:
@@ -82,7 +85,7 @@ class Lifespans:
         if self._first_ns is None:
             self._first_ns = now_ns
         if now_ns - self._first_ns >= _HISTORY_NS:
-            self._warn(publisher, _expired(publisher, now_ns - since_ns))
+            self._on_expired(publisher, _expired(publisher, now_ns - since_ns))
 
     def _lifespan_of(self, gid: bytes) -> int:
         publisher = self._publishers.get(gid)

@@ -106,9 +106,9 @@ class InProcessSubscription(SubscriptionPort):
     def __init__(
         self,
         endpoint: Endpoint,
-        sink: Sink,
         transport: "InProcessTransport",
         *,
+        sink: Sink,
         shared: bool,
     ) -> None:
         self.endpoint = endpoint
@@ -164,7 +164,7 @@ class InProcessTransport(Transport):
         self._types: dict[str, list[str]] = {}  # of each topic
         self._observers: list[TransportObserver] = []
         self._lock = threading.RLock()
-        self._services = ServiceTable(self._lock, self._changed)
+        self._services = ServiceTable(self._lock, on_change=self._changed)
 
     def observe(self, observer: TransportObserver) -> None:
         self._observers.append(observer)
@@ -185,7 +185,9 @@ class InProcessTransport(Transport):
     ) -> InProcessSubscription:
         with self._lock:
             topic = self._topic_for(endpoint)
-            subscription = InProcessSubscription(endpoint, sink, self, shared=shared)
+            subscription = InProcessSubscription(
+                endpoint, self, sink=sink, shared=shared
+            )
             topic.subscriptions.append(subscription)
             for publisher in topic.publishers:
                 if _is_compatible(publisher, subscription):

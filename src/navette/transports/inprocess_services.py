@@ -23,7 +23,7 @@ class InProcessService(ServicePort):
     """Holds the sink that the clients of the service call."""
 
     def __init__(
-        self, endpoint: Endpoint, sink: RequestSink, table: "ServiceTable"
+        self, endpoint: Endpoint, table: "ServiceTable", *, sink: RequestSink
     ) -> None:
         self.endpoint = endpoint
         self.sink = sink
@@ -52,7 +52,7 @@ class InProcessClient(ClientPort):
     """Calls the sinks of the compatible servers, oldest first."""
 
     def __init__(
-        self, endpoint: Endpoint, sink: ReplySink, table: "ServiceTable"
+        self, endpoint: Endpoint, table: "ServiceTable", *, sink: ReplySink
     ) -> None:
         self.endpoint = endpoint
         self.sink = sink
@@ -77,28 +77,30 @@ class InProcessClient(ClientPort):
 
 Port = InProcessService | InProcessClient
 
+OnServicesChanged = Callable[[], None]
+"""Called under the lock after a server or client was added or removed."""
+
 
 class ServiceTable:
     """All servers and clients of a transport, by service name.
 
     Args:
         lock: held during every change.
-        changed: called after every change.
     """
 
-    def __init__(self, lock: threading.RLock, changed: Callable[[], None]) -> None:
+    def __init__(self, lock: threading.RLock, *, on_change: OnServicesChanged) -> None:
         self.clients_by_gid: dict[bytes, InProcessClient] = {}
         self._ports: dict[str, list[Port]] = {}
         self._lock = lock
-        self._changed = changed
+        self._on_change = on_change
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> InProcessService:
-        service = InProcessService(endpoint, sink, self)
+        service = InProcessService(endpoint, self, sink=sink)
         self._add(service)
         return service
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> InProcessClient:
-        client = InProcessClient(endpoint, sink, self)
+        client = InProcessClient(endpoint, self, sink=sink)
         self._add(client)
         self.clients_by_gid[endpoint.gid] = client
         return client
@@ -114,7 +116,7 @@ class ServiceTable:
             if not ports:
                 del self._ports[name]
             _relink(ports)
-            self._changed()
+            self._on_change()
 
     def ports(self) -> list[Port]:
         with self._lock:
@@ -126,7 +128,7 @@ class ServiceTable:
             _check_type(port.endpoint, ports)
             ports.append(port)
             _relink(ports)
-            self._changed()
+            self._on_change()
 
 
 def _relink(ports: list[Port]) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from lockstep_fakes import Publishers
 from navette.errors import InvalidValueError, LockStepError
 from navette.runtime import Context, Executor, SystemClock, VirtualClock
 from navette.runtime.clock import Wakeup
@@ -129,7 +130,7 @@ def test_a_participant_runs_the_granted_time_only() -> None:
 def test_a_participant_reports_its_samples_once_a_step() -> None:
     bench = ParticipantBench()
     sent = bench.clock.traffic.sent_counter.open(bytes(16), "/planner")
-    sent(1)
+    sent.add(1)
     turns(bench.clock)
     assert bench.wire.reports[-1].sent == {bytes(16): Sent("/planner", 1, 1, 1)}
     bench.granted(1, 10 * MS, sent=bench.wire.reports[-1].sent)
@@ -146,7 +147,7 @@ def buffer_one(clock: LockStepClock, got: list[Any]) -> tuple[bytes, Any]:
     endpoint = Endpoint(
         EndpointKind.PUBLISHER, "/t", "p/msg/T", EndpointQos(), "n", "/", gid, "h"
     )
-    info = SubscriptionInfo("/t", got.append, lambda: {gid: endpoint}, depth=1)
+    info = SubscriptionInfo("/t", Publishers({gid: endpoint}), sink=got.append, depth=1)
     return gid, clock.traffic.buffer.open(info)
 
 

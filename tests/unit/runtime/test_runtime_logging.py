@@ -13,6 +13,7 @@ from navette.runtime.clock import Wakeup
 from navette.runtime.log import Logger, LogHub, LogRecord
 from navette.runtime.log_levels import severity_from_string
 from navette.runtime.log_sinks import ConsoleSink, FileSink, format_record
+from navette.runtime.loop import EventLoop
 from navette.testing import GraphHarness
 
 
@@ -20,8 +21,8 @@ class Hub(LogHub):
     """A hub with a clock that the test sets."""
 
     def __init__(self) -> None:
-        self.ns = 0
-        super().__init__(lambda: self.ns)
+        self.clock = VirtualClock()
+        super().__init__(EventLoop(self.clock))
         self.records: list[LogRecord] = []
         self.sinks.append(self.records.append)
 
@@ -83,7 +84,7 @@ def test_a_record_contains_file_and_line(hub: Hub) -> None:
 def test_once_skip_first_and_throttle(hub: Hub) -> None:
     logger = Logger("a", hub)
     for step in range(5):
-        hub.ns = step * 1_000_000_000
+        hub.clock.now_ns = step * 1_000_000_000
         logger.info(f"once {step}", once=True)
         logger.info(f"skip {step}", skip_first=True)
         logger.info(f"throttle {step}", throttle_duration_sec=2.0)

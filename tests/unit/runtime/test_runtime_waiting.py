@@ -180,7 +180,7 @@ def test_an_exception_of_a_waitable_names_it(graph: GraphHarness) -> None:
 
 def test_methods_that_a_waitable_must_implement() -> None:
     waitable: Waitable[Any] = Waitable(ReentrantCallbackGroup())
-    wait_set = WaitSet(print)
+    wait_set = WaitSet(on_due=print)
     for call in (
         lambda: waitable.add_to_wait_set(wait_set),
         lambda: waitable.is_ready(wait_set),

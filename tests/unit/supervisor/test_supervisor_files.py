@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from navette.runtime.clock import VirtualClock
 from navette.supervisor import log_store
 from navette.supervisor.client import SupervisorClient, SupervisorError
 from navette.supervisor.log_store import LogLine, LogReader, LogStore
@@ -13,18 +14,14 @@ from navette.supervisor.project import Project, socket_path
 from navette.supervisor.status import projects_in_same_domain
 
 
-def everything(line: LogLine) -> bool:
-    return True
-
-
 def texts(lines: list[LogLine]) -> list[str]:
     return [line.text for line in lines]
 
 
 def test_the_log_is_read_in_order_while_it_is_written(tmp_path: Path) -> None:
-    reader = LogReader(tmp_path, lambda line: line.service == "a")
+    reader = LogReader(tmp_path, accept=lambda line: line.service == "a")
     assert reader.last(None) == []
-    book = LogStore(tmp_path, lambda: 7)
+    book = LogStore(tmp_path, VirtualClock(7))
     book.write("a", "x", ["one", "two"])
     book.write("b", "b", ["other"])
     assert texts(reader.last(1)) == ["two"]
@@ -42,14 +39,14 @@ def test_rotation_loses_no_new_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(log_store, "_MAX_BYTES", 1000)
-    book, reader = LogStore(tmp_path, lambda: 0), LogReader(tmp_path, everything)
+    book, reader = LogStore(tmp_path, VirtualClock()), LogReader(tmp_path)
     found = []
     for number in range(100):
         book.write("a", "x", [str(number)])
         found += texts(reader.new())
     assert found == [str(number) for number in range(100)]
     assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 2500
-    late = LogReader(tmp_path, everything)
+    late = LogReader(tmp_path)
     assert texts(late.last(3)) == ["97", "98", "99"]
     late.close()
     reader.close()
@@ -58,14 +55,14 @@ def test_rotation_loses_no_new_line(
 
 def test_incomplete_lines_are_skipped(tmp_path: Path) -> None:
     (tmp_path / log_store.FILE_NAME).write_bytes(b'{"t": 1, "mod\n[1]\n\xff\n')
-    reader = LogReader(tmp_path, everything)
+    reader = LogReader(tmp_path)
     assert reader.last(None) == []
     reader.close()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux: /dev/full")
 def test_a_full_disk_loses_lines_only(tmp_path: Path) -> None:
-    book, reader = LogStore(tmp_path, lambda: 0), LogReader(tmp_path, everything)
+    book, reader = LogStore(tmp_path, VirtualClock()), LogReader(tmp_path)
     book.write("a", "x", ["before"])
     usual = book._file
     with Path("/dev/full").open("wb", buffering=0) as full:

@@ -44,8 +44,8 @@ class World:
         self.behaviour: Callable[[FakeChild], None] = lambda child: None
         self.idle = 0
         self.folder = folder
-        self.log = LogStore(folder, lambda: self.loop.clock.now_ns)
-        self.supervisor = Supervisor(self, self.loop, self.log, self._be_idle)  # type: ignore[arg-type]
+        self.log = LogStore(folder, self.loop)
+        self.supervisor = Supervisor(self, self.loop, self.log, on_idle=self._be_idle)  # type: ignore[arg-type]
 
     def start(self, argv: Any, options: Any) -> FakeChild:
         if argv[0] == "missing":
@@ -84,7 +84,7 @@ class World:
 
     @property
     def log_lines(self) -> list[str]:
-        reader = LogReader(self.folder, lambda line: True)
+        reader = LogReader(self.folder)
         lines = [f"{line.label}: {line.text}" for line in reader.last(None)]
         reader.close()
         return lines

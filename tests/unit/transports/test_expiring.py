@@ -28,7 +28,9 @@ class Case:
         )
         self.known = {GID: self.publisher}
         self.warnings: list[str] = []
-        self.lifespans = Lifespans(self.known, lambda _, text: self.note(text))
+        self.lifespans = Lifespans(
+            self.known, on_expired=lambda _, text: self.note(text)
+        )
 
     def note(self, text: str) -> None:
         self.warnings.append(text)

@@ -45,13 +45,18 @@ class Bench:
     def open(self) -> BufferedSubscription:
         info = SubscriptionInfo(
             "/t",
-            self.items.append,
-            lambda: self.remotes,
+            self,
+            sink=self.items.append,
             is_latched=self.qos.is_latched,
             depth=self.qos.queue_length,
-            on_delivered=lambda gid, item: self.delivered.append((gid, item[2])),
         )
         return self.buffer.open(info)
+
+    def publishers(self) -> dict[bytes, Endpoint]:
+        return self.remotes
+
+    def on_sample(self, gid: bytes, item: Item) -> None:
+        self.delivered.append((gid, item[2]))
 
     def begin(self) -> None:
         """Begin the first step, with no samples sent before."""
@@ -215,11 +220,11 @@ def test_nothing_is_required_for_a_closed_subscription() -> None:
 def test_counts_are_reported_until_they_are_granted() -> None:
     counter = SentCounter()
     first, second = counter.open(A, "/n"), counter.open(B, "/n")
-    first(4)
-    first(6)
+    first.add(4)
+    first.add(6)
     assert counter.changed() == {A: Sent("/n", 1, 2, 6), B: Sent("/n", 2, 0, 0)}
     reported = counter.changed()
-    second(1)  # after the report
+    second.add(1)  # after the report
     counter.granted(reported)
     assert counter.changed() == {B: Sent("/n", 2, 1, 1)}
 

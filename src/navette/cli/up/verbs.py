@@ -352,7 +352,7 @@ def _watch_files(client: "SupervisorClient", words: Sequence[str]) -> None:
     from navette.cli.up.view import LogView
     from navette.cli.up.watch import ServiceWatch
 
-    watch = ServiceWatch(client, lambda: _read(client.project, words))
+    watch = ServiceWatch(client, read=lambda: _read(client.project, words))
     reader, view, pause = _reader(client.project, []), LogView(), threading.Event()
     note(f"watching {watch.describe()}; Ctrl-C ends the watch, not the services")
     try:
@@ -373,7 +373,9 @@ def _reader(project: "Project", services: Sequence[str]) -> "LogReader":
     chosen = set(services)
     return LogReader(
         project.state,
-        lambda line: not chosen or line.service in chosen or line.label in chosen,
+        accept=lambda line: (
+            not chosen or line.service in chosen or line.label in chosen
+        ),
     )
 
 

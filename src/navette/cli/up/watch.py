@@ -72,18 +72,14 @@ def _files(folder: Path) -> Iterator[Path]:
             yield Path(entry.path)
 
 
+ReadProject = Callable[[], tuple[ProjectConfig, list[str]]]
+"""Reads the project's file; returns it and the chosen services."""
+
+
 class ServiceWatch:
-    """Watches the files of services and the project's own file.
+    """Watches the files of services and the project's own file."""
 
-    Args:
-        read: reads the project's file; returns it and the chosen services.
-    """
-
-    def __init__(
-        self,
-        client: SupervisorClient,
-        read: Callable[[], tuple[ProjectConfig, list[str]]],
-    ) -> None:
+    def __init__(self, client: SupervisorClient, *, read: ReadProject) -> None:
         self._client = client
         self._read = read
         config, names = read()

@@ -75,11 +75,15 @@ class _Topic:
         )
 
 
+OnMessage = Callable[[Any], Any]
+"""Receives the messages of an input."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Input(_Topic):
     """A subscription; ``callback`` is the method that gets the message, or its name."""
 
-    callback: str | Callable[[Any], Any]
+    callback: str | OnMessage
     #: Time since the last arrival after which the input is stale; None = no limit.
     timeout_s: float | None = None
     #: Whether publications of this node are not received.

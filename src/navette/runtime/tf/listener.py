@@ -26,6 +26,10 @@ _FAULTS = {"not_finite": "is not finite", "out_of_range": "is out of range"}
 _AUTHORITY = "default_authority"  # tf2's value for transforms from a topic
 
 
+OnInvalid = Callable[[str, InvalidInputError], None]
+"""Called with topic and error for each transform that cannot be used."""
+
+
 class TransformListener:
     """Fills a buffer from the topics of transforms, with subscriptions of ``node``.
 
@@ -39,8 +43,7 @@ class TransformListener:
         spin_thread: spin the node in a thread, for programs that do not spin. Ignored
             with a virtual clock, which would advance without the program.
         static_only: do not subscribe to moving transforms.
-        on_invalid: called with topic and error for each transform that cannot be used
-            instead of logging it.
+        on_invalid: receives the transforms that cannot be used, instead of the log.
     """
 
     def __init__(
@@ -54,7 +57,7 @@ class TransformListener:
         tf_topic: str = "/tf",
         tf_static_topic: str = "/tf_static",
         static_only: bool = False,
-        on_invalid: Callable[[str, InvalidInputError], None] | None = None,
+        on_invalid: OnInvalid | None = None,
     ) -> None:
         self.buffer = buffer
         self._on_invalid = on_invalid or self._log_invalid

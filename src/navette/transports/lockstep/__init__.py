@@ -14,7 +14,7 @@ from navette.transports.lockstep.sample_buffer import (
     SampleBuffer,
     SubscriptionInfo,
 )
-from navette.transports.lockstep.sent_counter import SentCounter
+from navette.transports.lockstep.sent_counter import PublisherCount, SentCounter
 from navette.transports.lockstep.wire import Participants, StepTraffic, StepWire
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "StepReport",
     "SampleBuffer",
     "Sent",
+    "PublisherCount",
     "SentCounter",
     "StepTraffic",
     "StepWire",

@@ -8,7 +8,8 @@ publisher, sequence number), which is the same in every run.
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, NamedTuple, Protocol
 
 from navette.transports.base import Endpoint, Item, Sink
 from navette.transports.lockstep.records import Sent
@@ -51,23 +52,33 @@ class _FromPublisher:
         return [(number, item) for number, item in due if number > self.after]
 
 
-class SubscriptionInfo(NamedTuple):
+class MatchedPublishers(Protocol):
+    """The remote publishers of a subscription."""
+
+    def publishers(self) -> Mapping[bytes, Endpoint]:
+        """Return them by gid."""
+
+    def on_sample(self, gid: bytes, item: Item) -> None:
+        """Process that a sample is delivered."""
+
+
+@dataclass(frozen=True)
+class SubscriptionInfo:
     """What the buffer requires of a subscription.
 
     Attributes:
+        matches: the publishers.
         sink: takes the samples when a step begins.
-        remotes: returns the matched publishers by gid.
         is_latched: whether it receives samples sent before it existed.
         depth: how many of those at most; None: all.
-        on_delivered: called with gid and item of each delivered sample.
     """
 
     topic: str
+    matches: MatchedPublishers
+    _: KW_ONLY
     sink: Sink
-    remotes: Callable[[], Mapping[bytes, Endpoint]]
     is_latched: bool = False
     depth: int | None = None
-    on_delivered: Callable[[bytes, Item], None] = lambda gid, item: None
 
 
 class BufferedSubscription:
@@ -100,7 +111,7 @@ class BufferedSubscription:
         """Pass a sample to the subscription, with ``now_ns`` as its received stamp."""
         message, source_ns, _, number = item
         item = message, source_ns, now_ns, number
-        self.info.on_delivered(gid, item)
+        self.info.matches.on_sample(gid, item)
         self.info.sink(item)
 
     def close(self) -> None:
@@ -116,7 +127,7 @@ class BufferedSubscription:
             known: what all publishers have ever sent; a new subscription requires
                 those samples of it that the publishers keep.
         """
-        remotes = self.info.remotes()
+        remotes = self.info.matches.publishers()
         for gid, each in (sent if self._is_known else known).items():
             received = self._publishers.get(gid)
             if received is None and gid in remotes:

@@ -2,7 +2,7 @@
 
 import threading
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from navette.transports.lockstep.records import Sent
 
@@ -16,18 +16,18 @@ class SentCounter:
         self._publishers_of: Counter[str] = Counter()
         self._lock = threading.Lock()
 
-    def open(self, gid: bytes, node: str) -> Callable[[int], None]:
-        """Add a publisher; return what to call with the number of each sample."""
+    def open(self, gid: bytes, node: str) -> "PublisherCount":
+        """Add a publisher; return its count."""
         with self._lock:
             self._publishers_of[node] += 1
             self._set(gid, Sent(node, self._publishers_of[node], 0, 0))
+        return PublisherCount(self, gid)
 
-        def count(sequence: int) -> None:
-            with self._lock:
-                old = self._sent[gid]
-                self._set(gid, Sent(old.node, old.publisher, old.total + 1, sequence))
-
-        return count
+    def add(self, gid: bytes, sequence: int) -> None:
+        """Count one sample of a publisher."""
+        with self._lock:
+            old = self._sent[gid]
+            self._set(gid, Sent(old.node, old.publisher, old.total + 1, sequence))
 
     def changed(self) -> dict[bytes, Sent]:
         """Return the counts that no grant has contained yet."""
@@ -43,3 +43,14 @@ class SentCounter:
 
     def _set(self, gid: bytes, sent: Sent) -> None:
         self._sent[gid] = self._changed[gid] = sent
+
+
+class PublisherCount:
+    """Counts the samples of one publisher; used from any thread."""
+
+    def __init__(self, counter: SentCounter, gid: bytes) -> None:
+        self._counter, self._gid = counter, gid
+
+    def add(self, sequence: int) -> None:
+        """Count the sample with this sequence number."""
+        self._counter.add(self._gid, sequence)

@@ -5,13 +5,13 @@ rmw_zenoh defines no such sample, so only Navette's subscriptions receive it: a 
 """
 
 import threading
-from collections.abc import Callable
 from typing import Any
 
 import zenoh
 
 from navette.transports.base import Endpoint, TransportObserver
 from navette.transports.zenoh.callbacks import direct
+from navette.transports.zenoh.graph import RemoteGraph
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.session_id import is_navette_session
 
@@ -22,18 +22,15 @@ class LivelinessAssertions(TransportObserver):
     The subscriber is declared when a subscription or publisher first requires it.
 
     Args:
-        on_asserted: called with the gid of a publisher, on Zenoh's threads.
+        graph: receives the assertions, on Zenoh's threads.
     """
 
     def __init__(
-        self,
-        session: zenoh.Session,
-        domain_id: int,
-        on_asserted: Callable[[bytes], None],
+        self, session: zenoh.Session, domain_id: int, graph: RemoteGraph
     ) -> None:
         self._session = session
         self._prefix = f"@navette/{domain_id}/alive"
-        self._on_asserted = on_asserted
+        self._graph = graph
         self._subscriber: Any = None
         self._lock = threading.Lock()
 
@@ -66,6 +63,6 @@ class LivelinessAssertions(TransportObserver):
     def _on_sample(self, sample: zenoh.Sample) -> None:
         gid = str(sample.key_expr).rpartition("/")[2]
         try:
-            self._on_asserted(bytes.fromhex(gid))
+            self._graph.asserted(bytes.fromhex(gid))
         except ValueError:  # not a gid: sent by a program other than Navette
             return

@@ -30,7 +30,9 @@ class ZenohClient(ClientPort):
     (decision 0018).
     """
 
-    def __init__(self, owner: PortOwner, entity: ZenohEntity, sink: ReplySink) -> None:
+    def __init__(
+        self, owner: PortOwner, entity: ZenohEntity, *, sink: ReplySink
+    ) -> None:
         self.matches = entity.matches
         #: Newest sequence number, also of requests that had no remote server.
         self.last = entity.initial_sequence

@@ -118,7 +118,9 @@ class RemoteGraph:
 
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
         """Match an endpoint of this session with the remote ones from now on."""
-        matches = Matches(endpoint, type_hash, self._topics, self._queue_assertion)
+        matches = Matches(
+            endpoint, type_hash, self._topics, on_asserted=self._queue_assertion
+        )
         with self._lock:
             self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
             remotes = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})

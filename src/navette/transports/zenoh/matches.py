@@ -6,6 +6,9 @@ from navette.transports.base import Endpoint, Item
 from navette.transports.expiring import age_ns
 from navette.transports.qos import INFINITE_NS
 
+OnAsserted = Callable[["Matches", bytes], None]
+"""Called with the gid of a publisher whose sample asserts that it is alive."""
+
 
 class Matches:
     """Remote endpoints matched with a local one; changed while other threads read.
@@ -13,8 +16,6 @@ class Matches:
     Args:
         endpoint: the local endpoint.
         topics: gid → topic of every remote publisher or client ever seen.
-        on_asserted: called with the gid of a publisher whose sample asserts that it is
-            alive.
 
     Attributes:
         remotes: matched endpoints by liveliness token.
@@ -30,7 +31,8 @@ class Matches:
         endpoint: Endpoint,
         type_hash: str,
         topics: Mapping[bytes, str],
-        on_asserted: Callable[["Matches", bytes], None],
+        *,
+        on_asserted: OnAsserted,
     ) -> None:
         self._topics = topics
         self._on_asserted = on_asserted
@@ -80,6 +82,10 @@ class Matches:
             return ""
         topic = self._topics.get(gid, "")
         return "" if topic == self.endpoint.topic else topic
+
+    def publishers(self) -> dict[bytes, Endpoint]:
+        """Return a copy of :attr:`by_gid`."""
+        return dict(self.by_gid)
 
     def on_sample(self, gid: bytes, item: Item) -> None:
         """Assert the publisher of a sample that is not older than its lease."""

@@ -3,6 +3,7 @@
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, Protocol
 
+from navette.transports.clock import NanosecondClock
 from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.session import ZenohSession
@@ -38,8 +39,9 @@ class PortOwner(Protocol):
     def own_gids(self) -> AbstractSet[bytes]:
         """Gids of this session's publishers."""
 
-    def now_ns(self) -> int:
-        """Return the time for received stamps and replies."""
+    @property
+    def clock(self) -> NanosecondClock:
+        """The time for received stamps and replies."""
 
     def release(self, port: Any) -> None:
         """Withdraw the endpoint of a port that closes."""

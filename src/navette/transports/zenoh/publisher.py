@@ -10,6 +10,7 @@ import zenoh
 from navette.msgs import serialize
 from navette.transports.base import PublisherPort
 from navette.transports.encoded import Encoded
+from navette.transports.lockstep import PublisherCount
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_publisher
@@ -26,8 +27,7 @@ class ZenohPublisher(PublisherPort):
 
     Args:
         retransmits: whether subscriptions can fetch the samples that they missed.
-        count_sent: in lock-step, called with the sequence number of each sample. No
-            sample is dropped then.
+        sent_count: in lock-step, counts the samples. No sample is dropped then.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class ZenohPublisher(PublisherPort):
         entity: ZenohEntity,
         *,
         retransmits: bool,
-        count_sent: Callable[[int], None] | None = None,
+        sent_count: PublisherCount | None = None,
     ) -> None:
         self.matches = entity.matches
         #: Newest sequence number, also of samples that had no remote subscription.
@@ -44,7 +44,7 @@ class ZenohPublisher(PublisherPort):
         self._owner = owner
         self._entity = entity
         self._keeps_samples = entity.qos.is_latched or retransmits
-        self._count_sent = count_sent
+        self._sent_count = sent_count
         self._is_open = True
         self._lock = threading.Lock()
         self._declare: Callable[[], Any] = partial(
@@ -53,7 +53,7 @@ class ZenohPublisher(PublisherPort):
             entity.key,
             entity.qos,
             retransmits=retransmits,
-            lossless=count_sent is not None,
+            lossless=sent_count is not None,
         )
         self._publisher: Any = None
         self._put: Callable[..., None] = self._declare_and_put
@@ -78,13 +78,13 @@ class ZenohPublisher(PublisherPort):
             if self._is_open and not self._owner.session.zenoh.is_closed():
                 raise
             return  # closed meanwhile by another thread
-        if self._count_sent is not None:
-            self._count_sent(sequence)
+        if self._sent_count is not None:
+            self._sent_count.add(sequence)
 
     def _is_awaited(self, now_ns: int) -> bool:
         """Return whether a subscriber exists whose token is still unread (2 µs)."""
         is_recent = self._owner.session.last_received.is_recent(now_ns)
-        if not is_recent or self._count_sent or self.matches.refused:
+        if not is_recent or self._sent_count or self.matches.refused:
             return False
         publisher = self._publisher
         try:

@@ -42,8 +42,9 @@ class ZenohService(ServicePort):
         self,
         owner: PortOwner,
         entity: ZenohEntity,
-        sink: RequestSink,
         queryables: Queryables,
+        *,
+        sink: RequestSink,
     ) -> None:
         self.matches = entity.matches
         max_bytes = MAX_WAITING_MESSAGES * owner.session.settings.max_message_bytes
@@ -63,7 +64,7 @@ class ZenohService(ServicePort):
         if not queries:  # of a client in this process, or answered before
             return
         sequence, gid = request_id.sequence, request_id.client_gid
-        attachment = Attachment(sequence, self._owner.now_ns(), gid).encode()
+        attachment = Attachment(sequence, self._owner.clock.now_ns, gid).encode()
         data = serialize(message)
         for query in queries:
             with query:
@@ -93,7 +94,7 @@ class ZenohService(ServicePort):
             self._owner.session.log_once.warning(("request", name, str(error)), text)
             _refuse(query, str(error))
             return
-        self._owner.session.last_received.time_ns = self._owner.now_ns()
+        self._owner.session.last_received.time_ns = self._owner.clock.now_ns
         if request is not None:
             self._sink(request)
 
@@ -114,7 +115,7 @@ class ZenohService(ServicePort):
         if not ticket:
             return None
         request_id = RequestId(gid, sequence, ticket)
-        return Request(message, source_ns, self._owner.now_ns(), request_id)
+        return Request(message, source_ns, self._owner.clock.now_ns, request_id)
 
 
 class _Waiting(NamedTuple):

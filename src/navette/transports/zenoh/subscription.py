@@ -37,8 +37,8 @@ class ZenohSubscription(SubscriptionPort):
         owner: PortOwner,
         entity: ZenohEntity,
         message_class: type,
-        sink: Sink,
         *,
+        sink: Sink,
         retransmits: bool,
         buffered: BufferedSubscription | None = None,
     ) -> None:
@@ -48,10 +48,10 @@ class ZenohSubscription(SubscriptionPort):
         self._sink = sink
         self._buffered = buffered
         # Read for each sample.
-        self._now_ns = owner.now_ns
+        self._clock = owner.clock
         self._max_bytes = owner.session.settings.max_message_bytes
         self._last_received = owner.session.last_received
-        self._lifespans = Lifespans(self.matches.by_gid, self._log_expired)
+        self._lifespans = Lifespans(self.matches.by_gid, on_expired=self._log_expired)
         self._filter = SequenceFilter(self.matches.by_gid)
         self._lock = threading.Lock()
         # Samples may arrive before the declaration returns.
@@ -130,7 +130,7 @@ class ZenohSubscription(SubscriptionPort):
         if data[:2] not in _HEADERS or len(data) < _HEADER_SIZE:
             raise DecodeError(_bad_header(data))
         message = Encoded(data, self._message_class, partial(self._log_damaged, gid))
-        return gid, (message, source_ns, self._now_ns(), sequence)
+        return gid, (message, source_ns, self._clock.now_ns, sequence)
 
     def _log_expired(self, publisher: Endpoint, text: str) -> None:
         topic = self.matches.endpoint.topic

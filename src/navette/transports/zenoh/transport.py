@@ -15,6 +15,7 @@ from navette.transports.base import (
     Transport,
     TransportObserver,
 )
+from navette.transports.clock import NanosecondClock
 from navette.transports.lockstep import (
     BufferedSubscription,
     StepTraffic,
@@ -51,7 +52,7 @@ class ZenohTransport(Transport):
 
     Args:
         domain_id: separates systems on one network.
-        now_ns: the time for received stamps and replies.
+        clock: the time for received stamps and replies.
         settings: default: from the environment.
         traffic: in lock-step with other processes: buffers and counts the samples.
 
@@ -63,18 +64,18 @@ class ZenohTransport(Transport):
     def __init__(
         self,
         domain_id: int,
-        now_ns: Callable[[], int],
+        clock: NanosecondClock,
         settings: Settings | None = None,
         *,
         traffic: StepTraffic | None = None,
     ) -> None:
         self.domain_id = domain_id
-        self.now_ns = now_ns
+        self.clock = clock
         self._traffic = traffic
         self.session = ZenohSession(settings or Settings.from_environment(), domain_id)
         self._graph = self.session.graph
         self._assertions = LivelinessAssertions(
-            self.session.zenoh, domain_id, self._graph.asserted
+            self.session.zenoh, domain_id, self._graph
         )
         self._graph.observers += (self._assertions, self.session.shared_pools)
         # In lock-step each publisher is counted from its first sample on, so that it
@@ -107,16 +108,16 @@ class ZenohTransport(Transport):
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
         def make(entity: ZenohEntity) -> ZenohPublisher:
             self.own_gids.add(entity.gid)
-            count_sent = None
+            sent_count = None
             if self._traffic is not None:
-                count_sent = self._traffic.sent_counter.open(
+                sent_count = self._traffic.sent_counter.open(
                     entity.gid, endpoint.node_full_name
                 )
             return ZenohPublisher(
                 self,
                 entity,
                 retransmits=self._retransmits(entity),
-                count_sent=count_sent,
+                sent_count=sent_count,
             )
 
         return self._open(endpoint, make)
@@ -132,7 +133,7 @@ class ZenohTransport(Transport):
                 self,
                 entity,
                 message_class,
-                sink,
+                sink=sink,
                 retransmits=self._retransmits(entity),
                 buffered=self._buffered(endpoint, sink, entity.matches),
             )
@@ -141,11 +142,12 @@ class ZenohTransport(Transport):
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
         return self._open(
-            endpoint, lambda entity: ZenohService(self, entity, sink, self._queryables)
+            endpoint,
+            lambda entity: ZenohService(self, entity, self._queryables, sink=sink),
         )
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
-        return self._open(endpoint, lambda entity: ZenohClient(self, entity, sink))
+        return self._open(endpoint, lambda entity: ZenohClient(self, entity, sink=sink))
 
     def endpoints(self, topic: str | None = None) -> list[Endpoint]:
         return self._graph.endpoints(_TOPIC_KINDS, topic)
@@ -186,11 +188,10 @@ class ZenohTransport(Transport):
             return None
         info = SubscriptionInfo(
             endpoint.topic,
-            sink,
-            lambda: dict(matches.by_gid),
+            matches,
+            sink=sink,
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
-            on_delivered=matches.on_sample,
         )
         return self._traffic.buffer.open(info)
 

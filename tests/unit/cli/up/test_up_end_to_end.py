@@ -56,7 +56,7 @@ def wait_for(condition: Callable[[], object]) -> None:
 
 
 def log_lines(bench: Any) -> list[str]:
-    reader = LogReader(bench.client.project.state, lambda line: True)
+    reader = LogReader(bench.client.project.state)
     lines = [f"{line.label}: {line.text}" for line in reader.last(None)]
     reader.close()
     return lines

@@ -32,7 +32,7 @@ def test_a_change_restarts_the_affected_services(
     client = FakeClient()
     watch = ServiceWatch(
         client,  # type: ignore[arg-type]
-        lambda: (bench.read(), []),
+        read=lambda: (bench.read(), []),
     )
     assert watch.describe() == "the files of a (2), b (1), and navette.yaml"
     watch.poll()
