@@ -161,7 +161,7 @@ def write_copy(reader: BagReader, target: Path) -> None:
 
 def play(reader: BagReader) -> None:
     """Play to the end, then seek beyond both ends."""
-    source = TolerantSource(reader, lambda damage: None)
+    source = TolerantSource(reader, on_damage=lambda damage: None)
     player = Player(MergedSource([source, source]), PlayOptions())
     assert player.end_ns < 2**31 * 10**9, "a time that /clock can hold"
     now_ns = 0

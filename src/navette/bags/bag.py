@@ -9,6 +9,9 @@ from typing import NamedTuple, Self
 
 from navette.bags.qos import OfferedQos
 
+Convert = Callable[[bytes], bytes]
+"""Converts a recorded message to CDR."""
+
 
 @dataclass(frozen=True)
 class RecordedChannel:
@@ -25,7 +28,7 @@ class RecordedChannel:
 
     metadata: tuple[tuple[str, str], ...] = ()
 
-    to_cdr: Callable[[bytes], bytes] | None = field(default=None, compare=False)
+    to_cdr: Convert | None = field(default=None, compare=False)
     """Conversion of a recorded message to CDR; None if it is not converted."""
 
 
@@ -99,6 +102,10 @@ class RecordedMessage(NamedTuple):
     """Number given by the publisher or recorder; None if not recorded."""
 
 
+ReadBlocks = Callable[[], Iterator[bytes]]
+"""Reads the content of an attachment in parts; raises FileFormatError if damaged."""
+
+
 class BagAttachment(NamedTuple):
     """A file inside a recording."""
 
@@ -108,11 +115,7 @@ class BagAttachment(NamedTuple):
     """Bytes of its content."""
     log_ns: int
     create_ns: int
-    blocks: Callable[[], Iterator[bytes]]
-    """Read the whole record's content in parts, as in the file.
-
-    Raises FileFormatError if it is damaged.
-    """
+    blocks: ReadBlocks
 
 
 class MetadataRecord(NamedTuple):
@@ -137,6 +140,7 @@ class Damage:
 
 
 OnDamage = Callable[[Damage], None]
+"""Called for each part of a file that cannot be read, in the reading thread."""
 
 
 class MessageQuery(NamedTuple):

@@ -2,12 +2,13 @@
 
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from navette.bags.bag import (
     BagMessage,
     BagReader,
     BagTopic,
+    Convert,
     Damage,
     MessageQuery,
     OnDamage,
@@ -17,8 +18,6 @@ from navette.bags.binary_file import BinaryFile
 from navette.bags.chunks import LAST_NS, Chunk, ChunkMerge, ChunkQuery, Entry, FileIndex
 from navette.bags.compression import is_zstd, unpack_zstd_message
 from navette.errors import DecodeError, FileFormatError
-
-Convert = Callable[[bytes], bytes]
 
 
 class ChunkedReader(BagReader):
@@ -70,10 +69,10 @@ class ChunkedReader(BagReader):
         """
 
     @abstractmethod
-    def _read_chunk(self, chunk: Chunk) -> bytes: ...
+    def read_chunk(self, chunk: Chunk) -> bytes: ...
 
     @abstractmethod
-    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]: ...
+    def parse_chunk(self, chunk: Chunk, data: bytes) -> list[Entry]: ...
 
     def _add_channel(
         self, number: int, topic: BagTopic, convert: Convert | None = None
@@ -110,7 +109,7 @@ class ChunkedReader(BagReader):
         Raises:
             FileFormatError: the chunk is damaged.
         """
-        return self._entries(chunk, self._read_chunk(chunk))
+        return self.parse_chunk(chunk, self.read_chunk(chunk))
 
     def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
         try:
@@ -200,7 +199,7 @@ class ChunkedReader(BagReader):
         convert_of: Mapping[int, Convert],
     ) -> Iterator[tuple[BagTopic, Entry, bytes]]:
         on_damage = query.on_damage
-        merge = ChunkMerge(self._read_chunk, self._entries, on_damage)
+        merge = ChunkMerge(self, on_damage=on_damage)
         for entry, data in merge.messages(self.chunks, self._chunk_query(query)):
             channel = entry[1]
             topic = topic_of.get(channel)

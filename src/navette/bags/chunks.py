@@ -7,11 +7,11 @@ chunks all overlap is slow to read, but does not exhaust memory.
 """
 
 from collections import Counter, OrderedDict, deque
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from operator import attrgetter
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from navette.bags.bag import Damage, OnDamage
 from navette.errors import FileFormatError
@@ -91,8 +91,14 @@ class ChunkQuery(NamedTuple):
         return self.channels is None or entry.channel in self.channels
 
 
-ReadChunk = Callable[[Chunk], bytes]
-ListEntries = Callable[[Chunk, bytes], list[Entry]]
+class ChunkFile(Protocol):
+    """A file of chunks; its methods raise FileFormatError for damaged ones."""
+
+    def read_chunk(self, chunk: Chunk) -> bytes:
+        """Return the uncompressed bytes of a chunk."""
+
+    def parse_chunk(self, chunk: Chunk, data: bytes) -> list[Entry]:
+        """Return the messages in these bytes, in the order of the file."""
 
 
 class _Open(NamedTuple):
@@ -109,21 +115,17 @@ class ChunkMerge:
     """Reads chunks in time order.
 
     Args:
-        read: returns the uncompressed bytes of a chunk; raises FileFormatError.
-        list_entries: returns the messages in them in file order; raises
-            FileFormatError.
         on_damage: see :meth:`BagReader.messages`.
     """
 
     def __init__(
         self,
-        read: ReadChunk,
-        list_entries: ListEntries,
+        file: ChunkFile,
+        *,
         on_damage: OnDamage | None = None,
         cache_bytes: int = CACHE_BYTES,
     ) -> None:
-        self._read = read
-        self._list_entries = list_entries
+        self._file = file
         self._on_damage = on_damage
         self._cache_bytes = cache_bytes
         self._cached: OrderedDict[int, bytes] = OrderedDict()
@@ -173,7 +175,7 @@ class ChunkMerge:
     def _open(self, chunk: Chunk, query: ChunkQuery, heap: list[_Open]) -> None:
         try:
             data = self._bytes_of(chunk)
-            entries = self._list_entries(chunk, data)
+            entries = self._file.parse_chunk(chunk, data)
             if not query.takes_all:
                 entries = [entry for entry in entries if query.takes(entry)]
         except FileFormatError as error:
@@ -190,7 +192,7 @@ class ChunkMerge:
     def _bytes_of(self, chunk: Chunk) -> bytes:
         found = self._cached.get(chunk.number)
         if found is None:
-            found = self._read(chunk)
+            found = self._file.read_chunk(chunk)
             self._cached[chunk.number] = found
             self._size += len(found)
             while self._size > self._cache_bytes and len(self._cached) > 1:

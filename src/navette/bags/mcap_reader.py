@@ -65,10 +65,10 @@ class McapReader(ChunkedReader):
             found.stated = len(found.attachments), len(found.metadata)
         return self.index.extras
 
-    def _read_chunk(self, chunk: Chunk) -> bytes:
+    def read_chunk(self, chunk: Chunk) -> bytes:
         return read_chunk(self._file, chunk)
 
-    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
+    def parse_chunk(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
 
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:

@@ -55,10 +55,10 @@ class Ros1Reader(ChunkedReader):
     def scanned(self) -> FileIndex:
         return scan(self._file)
 
-    def _read_chunk(self, chunk: Chunk) -> bytes:
+    def read_chunk(self, chunk: Chunk) -> bytes:
         return read_chunk(self._file, chunk)
 
-    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
+    def parse_chunk(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
 
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:

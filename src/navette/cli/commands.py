@@ -10,6 +10,9 @@ from navette.cli.gc_tuning import collect
 from navette.cli.interruption import INTERRUPTED, raise_at_interrupt
 from navette.cli.options import call_arguments, click_parameters
 
+Verb = Callable[..., Any]
+"""The function of a command, with annotated parameters."""
+
 
 class AnnotatedCommand(click.Command):
     """A command whose parameters are the annotated parameters of its function.
@@ -22,7 +25,7 @@ class AnnotatedCommand(click.Command):
         self,
         name: str | None = None,
         *,
-        callback: Callable[..., Any] | None = None,
+        callback: Verb | None = None,
         params: list[click.Parameter] | None = None,
         panel: str = "Commands",
         **attributes: Any,

@@ -75,15 +75,17 @@ def kernel(
     return compiled
 
 
+KernelFunction = Callable[..., Any]
+"""The Python function of a kernel."""
+
+
 class KernelCache(NullCache):
     """Machine code of one kernel on disk: Numba's interface of a cache.
 
     A file that is absent, damaged or not private to the user counts as not cached.
     """
 
-    def __init__(
-        self, function: Callable[..., Any], options: Mapping[str, Any]
-    ) -> None:
+    def __init__(self, function: KernelFunction, options: Mapping[str, Any]) -> None:
         self._function: Any = function
         self._options = repr(sorted(options.items()))
 

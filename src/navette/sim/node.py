@@ -303,7 +303,7 @@ class SimNode(StageNode):
             clock if isinstance(clock, VirtualClock) else None,
             clock if isinstance(clock, PacedClock) else None,
             round(1e9 * CONTROL_PERIOD_S),
-            self._start_again,
+            reset=self._start_again,
         )
         for name, (kind, serve) in control.services.items():
             self.create_service(kind, f"~/{name}", serve)

@@ -36,6 +36,10 @@ class Pace(Protocol):
     factor: float
 
 
+ResetWorld = Callable[[], None]
+"""Puts robot and world back to their start."""
+
+
 class RunControl:
     """Serves the run of a simulation.
 
@@ -43,7 +47,6 @@ class RunControl:
         clock: None if its time cannot be stopped.
         pace: None if it is not paced.
         step_ns: duration of a step.
-        reset: resets robot and world.
     """
 
     def __init__(
@@ -51,7 +54,8 @@ class RunControl:
         clock: PausableClock | None,
         pace: Pace | None,
         step_ns: int,
-        reset: Callable[[], None],
+        *,
+        reset: ResetWorld,
     ) -> None:
         self._clock, self._pace = clock, pace
         self._step_ns, self._reset = step_ns, reset

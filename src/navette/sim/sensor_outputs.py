@@ -19,8 +19,8 @@ from navette.sim.sensor_specs import (
 )
 from navette.sim.sensor_topics import SensorTopic
 
-Message = Callable[[Any, Any, int, str], Any]
-"""From reading, sensor, stamp (ns) and frame."""
+MakeMessage = Callable[[Any, Any, int, str], Any]
+"""Returns a message from reading, sensor, stamp (ns) and frame."""
 
 
 class SensorOutput(NamedTuple):
@@ -30,7 +30,7 @@ class SensorOutput(NamedTuple):
         needs_reading: False: the message needs no measurement, and gets None.
     """
 
-    message: Message
+    message: MakeMessage
     needs_reading: bool = True
 
 

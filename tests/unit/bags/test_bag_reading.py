@@ -301,16 +301,15 @@ def test_qos_in_numbers_and_words() -> None:
 def test_overlapping_chunks_do_not_all_stay_in_memory() -> None:
     """Each chunk has one message at the first stamp and one at the last."""
     chunks = [Chunk(n, n, 1, 0, 1000 + n) for n in range(50)]
-    reads: list[int] = []
 
-    def read(chunk: Chunk) -> bytes:
-        reads.append(chunk.number)
-        return bytes([chunk.number]) * 1000
+    class File:
+        def read_chunk(self, chunk: Chunk) -> bytes:
+            return bytes([chunk.number]) * 1000
 
-    def entries(chunk: Chunk, data: bytes) -> list[Entry]:
-        return [Entry(0, 1, 0, 1), Entry(1000 + chunk.number, 1, 1, 2)]
+        def parse_chunk(self, chunk: Chunk, data: bytes) -> list[Entry]:
+            return [Entry(0, 1, 0, 1), Entry(1000 + chunk.number, 1, 1, 2)]
 
-    merge = ChunkMerge(read, entries, cache_bytes=5000)
+    merge = ChunkMerge(File(), cache_bytes=5000)
     found = list(merge.messages(chunks, ChunkQuery(None, 0, 10**6)))
     assert [entry.stamp_ns for entry, _ in found] == [0] * 50 + list(range(1000, 1050))
     assert [data[0] for _, data in found] == [*range(50), *range(50)]

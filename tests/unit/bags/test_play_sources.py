@@ -62,7 +62,9 @@ def test_a_damaged_part_is_skipped_and_reported_once(tmp_path: Path) -> None:
     with open_bag(path) as bag:
         with pytest.raises(FileFormatError):
             list(bag.messages())
-        player = Player(TolerantSource(bag, reported.append), PlayOptions(loop=True))
+        player = Player(
+            TolerantSource(bag, on_damage=reported.append), PlayOptions(loop=True)
+        )
         player.start(0)
         counts = []
         for _ in range(2):

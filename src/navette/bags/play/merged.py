@@ -1,25 +1,21 @@
 """Merge several recordings, and report damage instead of raising it."""
 
 import heapq
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from operator import attrgetter
 
-from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage
+from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage, OnDamage
 from navette.bags.play.source import Source
 
 _stamp = attrgetter("stamp_ns")
 
 
 class TolerantSource:
-    """A bag whose damaged parts are skipped.
+    """A bag whose damaged parts are skipped, and reported once each."""
 
-    Args:
-        report: called once for each damaged part, in the reading thread.
-    """
-
-    def __init__(self, reader: BagReader, report: Callable[[Damage], None]) -> None:
+    def __init__(self, reader: BagReader, *, on_damage: OnDamage) -> None:
         self._reader = reader
-        self._report = report
+        self._report = on_damage
         self._reported: set[Damage] = set()
         self.topics: Sequence[BagTopic] = reader.topics
         self.start_ns, self.end_ns = reader.start_ns, reader.end_ns

@@ -53,6 +53,13 @@ class PlayProgress:
     published: int
 
 
+OnPlaybackEnd = Callable[[], None]
+"""Called at the end of the recording."""
+
+OnPlaybackChange = Callable[[bool], None]
+"""Called when state, rate or position changed other than by playing; true: a jump."""
+
+
 class PlayerNode(Node):
     """Plays from :meth:`start`; all methods except :meth:`run_soon` run on the loop.
 
@@ -61,9 +68,6 @@ class PlayerNode(Node):
         remap: rules ``FROM:=TO`` for the topics.
         clock_rate_hz: rate of the recording's time on ``/clock``; a recorded ``/clock``
             is then not played.
-        on_end: called at the end of the recording.
-        on_change: called when state, rate or position changed other than by playing;
-            the argument is true for a jump.
 
     Raises:
         UnknownNameError, InvalidValueError: no recorded topic matches the options.
@@ -78,8 +82,8 @@ class PlayerNode(Node):
         node_name: str = "rosbag2_player",
         remap: Sequence[str] = (),
         clock_rate_hz: float | None = None,
-        on_end: Callable[[], None] | None = None,
-        on_change: Callable[[bool], None] | None = None,
+        on_end: OnPlaybackEnd | None = None,
+        on_change: OnPlaybackChange | None = None,
     ) -> None:
         words = [word for rule in remap for word in ("-r", rule)]
         super().__init__(
@@ -98,7 +102,7 @@ class PlayerNode(Node):
             self.player = Player(
                 _Without(source, CLOCK_TOPIC) if clock_rate_hz else source,
                 options or PlayOptions(),
-                DirectFeed if lock_step else PrefetchingFeed,
+                make_feed=DirectFeed if lock_step else PrefetchingFeed,
             )
         except NavetteError:
             super().destroy_node()

@@ -51,7 +51,11 @@ class Player:
     """
 
     def __init__(
-        self, source: Source, options: PlayOptions, make_feed: MakeFeed = DirectFeed
+        self,
+        source: Source,
+        options: PlayOptions,
+        *,
+        make_feed: MakeFeed = DirectFeed,
     ) -> None:
         self.options = options
         self._source = source

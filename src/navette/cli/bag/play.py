@@ -145,7 +145,7 @@ def _play(
             files, options, remap=remap, clock_rate_hz=clock_rate_hz, view_port=port
         )
         stack.callback(playback.close)
-        screen = PlayScreen(playback.progress)
+        screen = PlayScreen(playback)
         screen.show_head(files, len(playback.player.player.names), playback.url)
         word = "played"
         try:

@@ -1,6 +1,6 @@
 """Progress of the playback on stderr; stdout is left for data."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,8 +11,8 @@ from rich.table import Table
 from rich.text import Text
 
 from navette.bags.play import PlayState
-from navette.bags.play.node import PlayProgress
 from navette.cli.bag.text import counted
+from navette.navigation.stack.playback import BagPlayback
 
 _REFRESH_HZ = 12
 _MOST_LOSSES = 10
@@ -36,13 +36,13 @@ _KEYS = (
 class PlayScreen:
     """One line on the recording and, on a terminal, one live line of progress."""
 
-    def __init__(self, progress: Callable[[], PlayProgress]) -> None:
-        self._progress = progress
+    def __init__(self, playback: BagPlayback) -> None:
+        self._playback = playback
         self._console = Console(stderr=True, highlight=False)
 
     def show_head(self, paths: list[Path], topics: int, url: str | None) -> None:
         """Print the recording and the address of the live view."""
-        progress = self._progress()
+        progress = self._playback.progress()
         length_s = (progress.end_ns - progress.begin_ns) / 1e9
         head = Text("Playing", style="bold cyan")
         head += Text(f"  {' '.join(p.name for p in paths)}", style="bold")
@@ -73,7 +73,7 @@ class PlayScreen:
 
     def report(self, word: str) -> None:
         """Print the summary."""
-        progress = self._progress()
+        progress = self._playback.progress()
         place_s = (progress.position_ns - progress.begin_ns) / 1e9
         passes = f", pass {progress.passes}" if progress.passes > 1 else ""
         messages = counted(progress.published, "message")
@@ -95,7 +95,7 @@ class PlayScreen:
         self._console.print(Text(text, style="bold red"), soft_wrap=True)
 
     def _line(self) -> RenderableType:
-        progress = self._progress()
+        progress = self._playback.progress()
         sign, style = _SIGNS[progress.state]
         place_s = (progress.position_ns - progress.begin_ns) / 1e9
         length_s = (progress.end_ns - progress.begin_ns) / 1e9

@@ -33,26 +33,31 @@ _QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 _HEADER = "std_msgs/msg/Header"
 
 
+MakeMeter = Callable[[], Meter]
+"""Returns the meter of a topic."""
+
+MeterInput = Callable[[Any], int]
+"""Returns the input of the meter from a message, or from its bytes if ``raw``."""
+
+Remark = Callable[[Any], str]
+"""Returns the explanation of implausible figures, printed once; empty for none."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class MeasureOptions:
-    """What to measure, and what to print.
-
-    Args:
-        value: input of the meter from a message, or from its bytes if ``raw``.
-        remark: explanation of implausible figures, printed once; empty for none.
-    """
+    """What to measure, and what to print."""
 
     topics: list[str]
     all_topics: bool = False
-    make_meter: Callable[[], Meter]
-    value: Callable[[Any], int] = lambda _: 0
+    make_meter: MakeMeter
+    value: MeterInput = lambda _: 0
     raw: bool = True
     needs_header: bool = False
     filter: str | None = None
     count: int | None = None
     as_json: bool = False
     qos: QosOverrides = field(default_factory=QosOverrides)
-    remark: Callable[[Any], str] = lambda _: ""
+    remark: Remark = lambda _: ""
 
 
 def measure(node: Node, options: MeasureOptions) -> None:

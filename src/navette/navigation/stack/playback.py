@@ -95,7 +95,7 @@ class BagPlayback:
             for problem in reader.problems:
                 _log.warning("%s", problem)
             self.losses += [f"{path}: {each}" for each in reader.losses]
-            sources.append(TolerantSource(reader, self._report))
+            sources.append(TolerantSource(reader, on_damage=self._report))
         return sources[0] if len(sources) == 1 else MergedSource(sources)
 
     def _join(self) -> Context:

@@ -21,19 +21,22 @@ Protocols = Mapping[str, tuple[str, ...]]
 name, otherwise the first."""
 
 
+Target = Callable[..., Any]
+"""The class or function of a method."""
+
+
 @dataclass(frozen=True)
 class Method:
     """A chosen method: a class, or a function.
 
     Attributes:
         name: as chosen.
-        target: the class or function.
         entry: name of the method of the protocol that it has.
         is_own: whether it is not one of Navette's.
     """
 
     name: str
-    target: Callable[..., Any]
+    target: Target
     entry: str
     is_own: bool
 

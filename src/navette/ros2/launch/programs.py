@@ -73,7 +73,7 @@ class ProgramThread:
         self._over = False
         self._lock = Lock()
         self._running = RunningProgram(
-            replace(program, main=self._main), graph, self._exit
+            replace(program, main=self._main), graph, on_end=self._exit
         )
 
     @property

@@ -8,14 +8,14 @@ from collections.abc import Callable
 _POLL_S = 0.01
 
 
+WakeThread = Callable[[], object]
+"""Ends a wait of the thread; called after each interrupt."""
+
+
 class ThreadInterrupt:
-    """Interrupt of the function that :meth:`run` calls, not of code before or after it.
+    """Interrupt of the function that :meth:`run` calls, not of code around it."""
 
-    Args:
-        wake: called after each interrupt; must end a wait of the thread.
-    """
-
-    def __init__(self, wake: Callable[[], object]) -> None:
+    def __init__(self, *, wake: WakeThread) -> None:
         self._wake = wake
         self._ident: int | None = None
         self._is_requested = False

@@ -85,28 +85,34 @@ def run_together(programs: Sequence[Program]) -> int:
     return failed or _first_failure(running)
 
 
+OnProgramEnd = Callable[[int], object]
+"""Called in a program's thread with its exit code."""
+
+OnProgramReady = Callable[[], object]
+"""Called in another thread when a program's nodes exist and spin."""
+
+
 class RunningProgram:
     """A program in a thread.
 
     Args:
         graph: graph that the programs share.
-        on_end: called in the program's thread with its exit code.
-        on_ready: called in another thread when the program's nodes exist and spin.
     """
 
     def __init__(
         self,
         program: Program,
         graph: Graph,
-        on_end: Callable[[int], object] | None = None,
-        on_ready: Callable[[], object] | None = None,
+        *,
+        on_end: OnProgramEnd | None = None,
+        on_ready: OnProgramReady | None = None,
     ) -> None:
         self.program = program
         self.exit_code: int | None = None
         self.scope = Scope(graph)
         self._on_end = on_end
         self._on_ready = on_ready
-        self._interrupt = ThreadInterrupt(self._wake)
+        self._interrupt = ThreadInterrupt(wake=self._wake)
         # A daemon, so that the process can end before the program does.
         self._thread = threading.Thread(
             target=self._run, name=program.name, daemon=True

@@ -20,13 +20,17 @@ FAILED = 1
 INTERRUPTED = 130  # 128 + SIGINT, as a shell reports it
 
 
+Main = Callable[[], object]
+"""The body of a program; what it returns is the exit code, as in ``sys.exit``."""
+
+
 @dataclass(frozen=True)
 class Program:
     """What to run, with its arguments."""
 
     name: str
     arguments: tuple[str, ...]
-    main: Callable[[], object]
+    main: Main
     #: Inserted at the front of ``sys.path``, as Python does with a script's folder.
     path: tuple[Path, ...] = ()
 

@@ -225,7 +225,7 @@ def test_a_mission_ends_with_its_goals(results: str, code: int) -> None:
         mission = RunningProgram(
             program,
             graph,
-            lambda _: context.loop.call_soon_threadsafe(
+            on_end=lambda _: context.loop.call_soon_threadsafe(
                 lambda: over.set_result(None), "test"
             ),
         )

@@ -13,12 +13,16 @@ from navette.ros2.packages.interactive_markers.interactive_marker_server import 
 _MARKS = {1: "[x] ", 2: "[ ] "}
 
 
+OnFeedback = Callable[[InteractiveMarkerFeedback], Any]
+"""Receives the selection of a menu entry."""
+
+
 @dataclass
 class _Entry:
     title: str
     command_type: int
     command: str
-    callback: Callable[[InteractiveMarkerFeedback], Any] | None
+    callback: OnFeedback | None
     parent: int
     is_visible: bool = True
     check_state: int = 0

@@ -9,17 +9,18 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 _PERIOD_S = 0.005
 
 
+OnFailure = Callable[[BaseException], None]
+"""Called with the exception of a future that failed."""
+
+
 class AsyncioBridge:
     """An asyncio loop that runs in steps on the launch's loop, while something waits.
 
     Args:
         context: its ``busy`` holds the futures that the launch waits for.
-        on_error: called with the exception of a future that failed.
     """
 
-    def __init__(
-        self, context: LaunchContext, on_error: Callable[[BaseException], None]
-    ) -> None:
+    def __init__(self, context: LaunchContext, *, on_error: OnFailure) -> None:
         self._context = context
         self._on_error = on_error
         self._loop: asyncio.AbstractEventLoop | None = None

@@ -63,7 +63,7 @@ class LaunchService:
             loop=loop,
             runner=runner,
         )
-        self._bridge = AsyncioBridge(self.context, self._fail_of_future)
+        self._bridge = AsyncioBridge(self.context, on_error=self._fail_of_future)
         self._async_run: _AsyncRun | None = None
         self._start_checks: list[Callable[[], None]] = []
         # A caller with its own runner prints the messages itself.
@@ -146,7 +146,7 @@ class LaunchService:
     def _run(self) -> int:
         context = self.context
         context.save_environment()
-        bridge = self._bridge = AsyncioBridge(context, self._fail_of_future)
+        bridge = self._bridge = AsyncioBridge(context, on_error=self._fail_of_future)
         context.make_asyncio_loop = bridge.loop
         try:
             while not self._is_over():

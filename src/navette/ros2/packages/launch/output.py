@@ -2,7 +2,6 @@
 
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
@@ -30,15 +29,9 @@ class LabelledOutput:
         places: result of :func:`launch.logging.output_places`.
     """
 
-    def __init__(
-        self,
-        label: str,
-        places: dict[str, set[str]],
-        line_format: Callable[[str], str] | None = None,
-    ) -> None:
+    def __init__(self, label: str, places: dict[str, set[str]]) -> None:
         self._label = label
         self._places = places
-        self._format = line_format or (lambda line: f"{_shown(label)} {line}")
         self._cutters = {stream: LineSplitter() for stream in STREAMS}
         self._log: IO[str] | None = None
 
@@ -60,7 +53,7 @@ class LabelledOutput:
         places = places_of_stream(self._places, stream)
         if "screen" in places:
             terminal = sys.stdout if stream == "stdout" else sys.stderr
-            terminal.write("".join(self._format(text) + "\n" for text in texts))
+            terminal.write("".join(f"{_shown(self._label)} {text}\n" for text in texts))
             terminal.flush()
         if places & {"log", "own_log"}:
             log = self._open_log()
