@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 import navette
@@ -28,6 +29,24 @@ FLOW = (
     "arbiter",
     "missions",
 )
+# Classes with the constructors of rclpy, and the folder of ROS 2's other packages.
+RCLPY = {
+    "ActionServer",
+    "EventHandler",
+    "GuardCondition",
+    "JumpHandle",
+    "NumberOfEntities",
+    "ParameterCallbackHandle",
+    "ParameterEventCallbackHandle",
+    "PollSet",
+    "QoSProfile",
+    "Service",
+    "Subscription",
+    "Task",
+    "Timer",
+}
+ROS2_PACKAGES = SOURCE / "ros2" / "packages"
+MOST_POSITIONAL = 5
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
@@ -83,6 +102,67 @@ def imported_modules(path: Path) -> list[str]:
         elif isinstance(node, ast.ImportFrom) and node.module:
             found.append(node.module)
     return found
+
+
+def own_classes() -> Iterator[tuple[str, ast.ClassDef]]:
+    """Yield the classes whose constructors ROS 2 does not define, with their place."""
+    for path in python_files(SOURCE):
+        if ROS2_PACKAGES in path.parents:
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and node.name not in RCLPY:
+                yield f"{path.relative_to(SOURCE)}: {node.name}", node
+
+
+def constructor(cls: ast.ClassDef) -> ast.arguments | None:
+    for node in cls.body:
+        if isinstance(node, ast.FunctionDef) and node.name == "__init__":
+            return node.args
+    return None
+
+
+def is_record(cls: ast.ClassDef) -> bool:
+    marks = [*cls.decorator_list, *cls.bases]
+    return any(re.search(r"\b(dataclass|NamedTuple)\b", ast.unparse(m)) for m in marks)
+
+
+def parameter_types(cls: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    """Yield the parameters of a constructor, or the fields of a record."""
+    given = constructor(cls)
+    if given is not None:
+        for each in (*given.posonlyargs, *given.args, *given.kwonlyargs):
+            if each.annotation is not None:
+                yield each.arg, ast.unparse(each.annotation)
+    elif is_record(cls):
+        for node in cls.body:
+            if isinstance(node, ast.AnnAssign):
+                yield ast.unparse(node.target), ast.unparse(node.annotation)
+
+
+def test_constructors_receive_named_interfaces() -> None:
+    """A function that a class calls has a protocol or a type with a name.
+
+    Several functions of one owner are a protocol that the owner implements; a single
+    event is a named type such as ``OnDamage``.
+    """
+    unnamed = [
+        f"{place}({name}: {kind})"
+        for place, cls in own_classes()
+        for name, kind in parameter_types(cls)
+        if "Callable[" in kind
+    ]
+    assert not unnamed
+
+
+def test_constructors_have_few_positional_parameters() -> None:
+    found = {}
+    for place, cls in own_classes():
+        given = constructor(cls)
+        if given is not None:
+            count = len(given.posonlyargs) + len(given.args) - 1  # without self
+            if count > MOST_POSITIONAL:
+                found[place] = count
+    assert not found
 
 
 def test_tests_do_not_sleep() -> None:
