@@ -50,7 +50,7 @@ class CommandQueue:
     A :class:`CommandRunner` whose :meth:`add` is called on any thread.
     """
 
-    def __init__(self, bridge: ThreadBridge, clock: WallClock) -> None:
+    def __init__(self, *, bridge: ThreadBridge, clock: WallClock) -> None:
         self._bridge, self._clock = bridge, clock
         self._work = WorkTime(clock)
         self._lanes: dict[Hashable, OrderedDict[Hashable, Command]] = {}

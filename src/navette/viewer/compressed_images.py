@@ -116,7 +116,7 @@ class ImageCompressor:
     """
 
     def __init__(
-        self, rate_hz: float, clock: WallClock, problems: ProblemReports
+        self, rate_hz: float, *, clock: WallClock, problems: ProblemReports
     ) -> None:
         self._rate_hz, self._clock, self._reports = rate_hz, clock, problems
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="navette-images")

@@ -115,8 +115,10 @@ class ViewerNode(StageNode):
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
         self._wall = SteadyClock()
-        self._images = ImageCompressor(self.params.image_rate_hz, self._wall, self)
-        self._commands = CommandQueue(self, self._wall)
+        self._images = ImageCompressor(
+            self.params.image_rate_hz, clock=self._wall, problems=self
+        )
+        self._commands = CommandQueue(bridge=self, clock=self._wall)
         self._hub = Hub(
             self,
             self._commands,
@@ -126,8 +128,8 @@ class ViewerNode(StageNode):
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
         )
-        self._publishers = ClientPublishers(self)
-        self._playback = PlaybackRequests(playback, self._hub, self)
+        self._publishers = ClientPublishers(graph=self)
+        self._playback = PlaybackRequests(playback, self._hub, bridge=self)
         self._denial_noted = False
         try:
             self._access = Access.of(self.params, os.environ, self._wall)
@@ -441,20 +443,22 @@ class ViewerNode(StageNode):
     # -- internals -----------------------------------------------------------------
 
     def _monitor_nodes(self) -> ParameterRequests:
-        calls = ServiceCalls(self, self._wall)
-        self._services = ServiceRequests(self._hub, self, calls)
+        calls = ServiceCalls(graph=self, clock=self._wall)
+        self._services = ServiceRequests(self._hub, calls, bridge=self)
         self._remote = RemoteParameters(
-            self._hub, self, graph=self, service_calls=calls, clock=self._wall
+            self._hub, bridge=self, graph=self, service_calls=calls, clock=self._wall
         )
         self._monitor = NodeMonitor(
             self._hub,
-            self,
+            bridge=self,
             graph=self,
             service_calls=calls,
             remote=self._remote,
             clock=self._wall,
         )
-        return ParameterRequests(self._hub, self, graph=self, remote=self._remote)
+        return ParameterRequests(
+            self._hub, bridge=self, graph=self, remote=self._remote
+        )
 
     def _serving_elsewhere(self) -> dict[str, bytes]:
         """Return the gid of each node of another process that serves parameters."""
@@ -474,7 +478,7 @@ class ViewerNode(StageNode):
         gate = Gate(
             AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
             self._access.login,
-            Site(read_page(page), self),
+            Site(read_page(page), documents=self),
             problems=self,
         )
         return ViewerServer(

@@ -22,8 +22,8 @@ class NodeMonitor:
     def __init__(
         self,
         hub: Hub,
-        bridge: ThreadBridge,
         *,
+        bridge: ThreadBridge,
         graph: GraphAccess,
         service_calls: ServiceCalls,
         remote: RemoteParameters,

@@ -34,8 +34,8 @@ class ParameterRequests:
     def __init__(
         self,
         hub: Hub,
-        bridge: ThreadBridge,
         *,
+        bridge: ThreadBridge,
         graph: GraphAccess,
         remote: RemoteParameters,
     ) -> None:

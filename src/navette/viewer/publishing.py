@@ -27,7 +27,7 @@ class ClientPublishers:
     All methods raise NavetteError for types, topics and data that cannot be published.
     """
 
-    def __init__(self, graph: GraphAccess) -> None:
+    def __init__(self, *, graph: GraphAccess) -> None:
         self._graph = graph
         self._opened: dict[tuple[int, int], tuple[str, Any]] = {}
 

@@ -59,8 +59,8 @@ class RemoteParameters:
     def __init__(
         self,
         hub: Hub,
-        bridge: ThreadBridge,
         *,
+        bridge: ThreadBridge,
         graph: GraphAccess,
         service_calls: ServiceCalls,
         clock: WallClock,

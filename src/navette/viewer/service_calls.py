@@ -36,7 +36,7 @@ class ServiceCalls:
         clock: wall time; a frozen peer is frozen in real time.
     """
 
-    def __init__(self, graph: GraphAccess, clock: WallClock) -> None:
+    def __init__(self, *, graph: GraphAccess, clock: WallClock) -> None:
         self._graph = graph
         self._clock = clock
         self._clients: dict[str, ServiceClient] = {}

@@ -21,7 +21,7 @@ class ServiceRequests:
     """Calls services for clients; each call is answered once, in its own encoding."""
 
     def __init__(
-        self, hub: Hub, bridge: ThreadBridge, service_calls: ServiceCalls
+        self, hub: Hub, service_calls: ServiceCalls, *, bridge: ThreadBridge
     ) -> None:
         self._hub, self._bridge, self._service_calls = hub, bridge, service_calls
 

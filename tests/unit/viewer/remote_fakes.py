@@ -31,7 +31,7 @@ class World:
         self.bridge = FakeBridge()
         self.nodes_here = ["/viewer"]
         self.nodes_elsewhere = ["/far"]
-        self.service_calls = ServiceCalls(self, self.clock)
+        self.service_calls = ServiceCalls(graph=self, clock=self.clock)
         self.answers: dict[str, ServiceResponse] = {}
         self.calls: list[Call] = []
         self.clients: list[str] = []

@@ -24,7 +24,7 @@ class Bench(World):
         self.events = self.bridge.soon
         remote = RemoteParameters(
             self.hub,
-            self.bridge,
+            bridge=self.bridge,
             graph=self,
             service_calls=self.service_calls,
             clock=self.clock,
@@ -32,7 +32,7 @@ class Bench(World):
         remote.set_nodes({"/far": bytes(16)})
         self.monitor = NodeMonitor(
             self.hub,
-            self.bridge,
+            bridge=self.bridge,
             graph=self,
             service_calls=self.service_calls,
             remote=remote,

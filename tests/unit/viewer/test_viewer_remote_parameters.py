@@ -31,7 +31,7 @@ class Far(World):
         self.texts: list[ParameterText] = []
         self.remote = RemoteParameters(
             self,  # type: ignore[arg-type]
-            self.bridge,
+            bridge=self.bridge,
             graph=self,
             service_calls=self.service_calls,
             clock=self.clock,

@@ -73,7 +73,7 @@ class Executor:
     def __init__(self, time: FakeClock) -> None:
         bridge = FakeBridge()
         self.ready, self.later = bridge.soon, bridge.later
-        self.queue = CommandQueue(bridge, time)
+        self.queue = CommandQueue(bridge=bridge, clock=time)
 
     def turn(self) -> None:
         self.ready.pop(0)()

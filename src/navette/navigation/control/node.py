@@ -138,12 +138,14 @@ class ControlNode(MotionNode):
         self._stall = StallMonitor(params.stall_time_s)
         self._commanded = STOP
         self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
-        self._reports = ControlReports(self, self)
+        self._reports = ControlReports(self, host=self)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
         self._lifecycle = StageLifecycle(
             self, "controller_server", on_inactive=lambda: self.on_path(Path())
         )
-        self._follow_server = FollowPathServer(self, self, self._lifecycle)
+        self._follow_server = FollowPathServer(
+            self, host=self, activation=self._lifecycle
+        )
 
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""

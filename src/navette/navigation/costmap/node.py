@@ -86,7 +86,7 @@ class CostmapNode(StageNode):
         self._selection = StampSelection(self.params.rate_hz)
         self._fault = ""  # newest of the user's method, or of a source
         self._newest: OccupancyGrid | None = None
-        self._services = CostmapServices(self, "local_costmap", self)
+        self._services = CostmapServices(self, "local_costmap", source=self)
 
     def declare_params(self) -> Any:
         """Declare the parameters of the obstacle layer, too."""

@@ -132,8 +132,8 @@ class MapMemoryNode(StageNode):
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
         self._lifecycle = StageLifecycle(self, "map_server")
-        self._map_services = MapServices(self, self)
-        self._costmap_services = CostmapServices(self, "global_costmap", self)
+        self._map_services = MapServices(self, store=self)
+        self._costmap_services = CostmapServices(self, "global_costmap", source=self)
         if self.params.map_file:
             self._load_file()
 

@@ -174,8 +174,8 @@ class PlannerNode(StageNode):
             self, "planner_server", on_inactive=self._end_goal
         )
         smoothing = StageLifecycle(self, "smoother_server")
-        self._smoother_server = SmootherServer(self, self, smoothing)
-        self._path_server = PathServer(self, self, self._lifecycle)
+        self._smoother_server = SmootherServer(self, host=self, activation=smoothing)
+        self._path_server = PathServer(self, host=self, activation=self._lifecycle)
         self.create_service(Trigger, "~/cancel", self.on_cancel)
         self.create_service(Trigger, "~/avoid_place", self.on_avoid_place)
         self._report()

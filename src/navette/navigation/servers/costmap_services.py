@@ -56,7 +56,7 @@ class CostmapServices:
         source: the costmap.
     """
 
-    def __init__(self, node: Node, name: str, source: CostmapSource) -> None:
+    def __init__(self, node: Node, name: str, *, source: CostmapSource) -> None:
         self._node, self._name, self._source = node, name, source
         for service, names, callback in (
             (ClearEntireCostmap, (f"clear_entirely_{name}",), self._clear_all),

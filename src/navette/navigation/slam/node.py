@@ -95,7 +95,7 @@ class SlamNode(StageNode):
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self.restart()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
-        self._services = SlamMapServices(self, self)
+        self._services = SlamMapServices(self, session=self)
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Place the robot in the known map."""

@@ -37,7 +37,9 @@ class FollowPathServer(GoalStepper):
     :meth:`step` is called after each step of the follower.
     """
 
-    def __init__(self, node: Node, host: ControlHost, activation: Activation) -> None:
+    def __init__(
+        self, node: Node, *, host: ControlHost, activation: Activation
+    ) -> None:
         self._node = node
         self._host = host
         self._goals = DriveGoalServer(

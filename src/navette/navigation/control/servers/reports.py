@@ -35,7 +35,7 @@ _WARNINGS = (
 class ControlReports:
     """Status, collision check and footprint on topics; explanations in the log."""
 
-    def __init__(self, node: StageNode, host: ControlHost) -> None:
+    def __init__(self, node: StageNode, *, host: ControlHost) -> None:
         self._node, self._host = node, host
         self._status = StatusReporter(node, topics.CONTROL_STATUS.name)
         self._steps_left = 0

@@ -47,7 +47,7 @@ class MapStore(Protocol):
 class MapServices:
     """``map_server/load_map``, ``map_server/map``, ``map_saver/save_map``."""
 
-    def __init__(self, node: Node, store: MapStore) -> None:
+    def __init__(self, node: Node, *, store: MapStore) -> None:
         self._node, self._store = node, store
         node.create_service(LoadMap, "map_server/load_map", self._load)
         node.create_service(GetMap, "map_server/map", self._get)

@@ -79,7 +79,9 @@ class _PathRequest(NamedTuple):
 class PathServer:
     """The actions that compute paths, and the service that checks one."""
 
-    def __init__(self, node: Node, host: PlanningHost, activation: Activation) -> None:
+    def __init__(
+        self, node: Node, *, host: PlanningHost, activation: Activation
+    ) -> None:
         self._host = host
         self.node = node
         for action, name in (

@@ -34,7 +34,9 @@ class SmootherServer(GoalStepper):
     A goal ends at once: before a request to cancel it could arrive.
     """
 
-    def __init__(self, node: Node, host: PlanningHost, activation: Activation) -> None:
+    def __init__(
+        self, node: Node, *, host: PlanningHost, activation: Activation
+    ) -> None:
         self._node = node
         self._host = host
         self._server = GoalServer(

@@ -59,7 +59,7 @@ class MapSession(Protocol):
 class SlamMapServices:
     """``slam/…`` with Nav2's types, and ``slam_toolbox/…`` with slam_toolbox's."""
 
-    def __init__(self, node: Node, session: MapSession) -> None:
+    def __init__(self, node: Node, *, session: MapSession) -> None:
         self._node, self._session = node, session
         node.create_service(SaveMap, "slam/save_map", self._save)
         node.create_service(Empty, "slam/restart", self._restart)
