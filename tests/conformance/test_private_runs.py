@@ -1,5 +1,6 @@
 """Runs of one user beside each other, and other users: real processes, real sockets."""
 
+import json
 import os
 import signal
 import socket
@@ -227,6 +228,20 @@ def test_verbs_ask_which_of_two_runs_and_reach_the_named_one(two: TwoRuns) -> No
         assert observers == ["/observer_of_sim_2"]
     outside = terminals.type("--run", "shared", "node", "list")
     assert (outside.returncode, outside.stdout) == (0, "")
+
+
+def test_the_doctor_finds_nothing_wrong_with_a_run(terminals: Terminals) -> None:
+    terminals.start("sim", "empty", "--port", "0")
+    registered(1)
+
+    def is_up() -> bool:
+        return set(terminals.type("node", "list").stdout.split()) >= NODES
+
+    until(is_up, "the stack is up", patience_s=START_S)
+    done = terminals.type("doctor", "--json")
+    findings = json.loads(done.stdout)["findings"]
+    wrong = [each for each in findings if each["level"] in ("warning", "problem")]
+    assert (wrong, done.returncode) == ([], 0)
 
 
 def test_one_run_is_found_and_a_taken_port_disturbs_no_one(

@@ -133,6 +133,31 @@ GOAL_POINT = StackTopic("/goal_point", "geometry_msgs/msg/PointStamped")
 GOAL_POSE = StackTopic("/goal_pose", "geometry_msgs/msg/PoseStamped")
 INITIAL_POSE = StackTopic("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
 
+#: Inputs without a publisher in a complete stack: of people, of further nodes, and of
+#: stages that some runs do not have.
+OPTIONAL = (
+    GOAL_POINT,
+    GOAL_POSE,
+    INITIAL_POSE,
+    CANCEL_GOAL,
+    PAUSE_NAVIGATION,
+    EMERGENCY_STOP,
+    EMERGENCY_STOP_RELEASE,
+    PREEMPT_TELEOP,
+    CMD_VEL_TELEOP,
+    CMD_VEL_ASSISTED,
+    CMD_VEL_REFLEX,
+    DRIVE,
+    SPEED_LIMIT,
+    SPEED_INFO,
+    SPEED_MASK,
+    KEEPOUT_INFO,
+    KEEPOUT_MASK,
+    KEEPOUT_ZONES,
+    LOCALIZATION_STATUS,
+    TRAJECTORY,
+)
+
 
 class ChainLink(NamedTuple):
     """A stage of the chain from sensor to wheels: its input and its output."""

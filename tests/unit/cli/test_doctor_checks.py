@@ -171,6 +171,42 @@ def test_two_types_on_a_topic() -> None:
     assert finding.text == (f"has 2 types: {SCAN}: /lidar; std_msgs/msg/String: /odd")
 
 
+TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+
+
+def test_a_node_may_use_several_types_on_a_topic() -> None:
+    both = (sub("/cmd_vel", "sim", TWIST), sub("/cmd_vel", "sim", STAMPED))
+    mine = pub("/cmd_vel", "arbiter", TWIST)
+    (finding,) = check_topics(Snapshot(endpoints=(*both, mine)))
+    assert finding.level is Rating.GOOD
+    # A publisher of one type and a subscriber of the other, though a third has both.
+    other = sub("/cmd_vel", "recorder", STAMPED)
+    finding = of(check_topics(Snapshot(endpoints=(*both, mine, other))), "/cmd_vel")
+    assert finding.level is Rating.PROBLEM
+    assert finding.text == (
+        f"has 2 types: {TWIST}: /arbiter, /sim; {STAMPED}: /recorder, /sim"
+    )
+
+
+def test_subscribers_of_different_types_without_a_publisher() -> None:
+    one, other = sub("/cmd", "a", TWIST), sub("/cmd", "b", STAMPED)
+    levels = [each.level for each in check_topics(Snapshot(endpoints=(one, other)))]
+    assert levels == [Rating.PROBLEM, Rating.WARNING]  # of the types, no publisher
+
+
+def test_definitions_are_compared_for_each_type() -> None:
+    ends = [
+        replace(end, type_hash=f"RIHS01_{digit * 64}")
+        for end, digit in (
+            (pub("/cmd_vel", "arbiter", TWIST), "a"),
+            (sub("/cmd_vel", "sim", TWIST), "a"),
+            (sub("/cmd_vel", "sim", STAMPED), "b"),
+        )
+    ]
+    (finding,) = check_topics(Snapshot(endpoints=tuple(ends)))
+    assert finding.level is Rating.GOOD
+
+
 @pytest.mark.parametrize(
     ("offered", "wanted", "policy"),
     [
@@ -219,6 +255,20 @@ def test_topics_published_by_hand_and_standard_topics_are_not_reported() -> None
         )
     )
     assert list(check_topics(seen)) == []
+
+
+def test_a_misspelled_topic_that_is_published_by_hand_is_reported() -> None:
+    bool_type = "std_msgs/msg/Bool"
+    wanted = sub("/emergency_stop", "arbiter", bool_type)
+    unrelated = pub("/lights", "mine", bool_type)
+    findings = list(check_topics(Snapshot(endpoints=(wanted, unrelated))))
+    assert [each.what for each in findings] == ["unread"]
+    misspelled = pub("/emergancy_stop", "mine", bool_type)
+    finding = of(
+        check_topics(Snapshot(endpoints=(wanted, misspelled))), "/emergency_stop"
+    )
+    assert finding.level is Rating.WARNING
+    assert finding.data["published_instead"] == ["/emergancy_stop"]
 
 
 def test_a_client_without_a_server() -> None:

@@ -7,6 +7,8 @@ from typing import Any
 
 from navette.errors import join_names
 
+TOPICS = "Topics"
+
 
 class Rating(Enum):
     """Severity; the value is the printed mark."""

@@ -2,29 +2,25 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
 from itertools import product
 
 from navette.cli.doctor.chain import consequence, explained, missing_links
-from navette.cli.doctor.distributions import distros_by_hash
-from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
+from navette.cli.doctor.findings import TOPICS, Diagnosis, Rating, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
+from navette.cli.doctor.topic_types import type_problems
 from navette.cli.session import is_of_every_node
-from navette.msgs.registry import DISTRO_VARIABLE
-from navette.msgs.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
+from navette.msgs.topics import OPTIONAL
 from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
 from navette.transports.qos import incompatible_policies
 
 NODES = "Nodes"
-TOPICS = "Topics"
 SERVICES = "Services"
 
-# Published by hand: a missing publisher is normal.
-_BY_HAND = {
-    GOAL_POINT.name,
-    GOAL_POSE.name,
-    INITIAL_POSE.name,
-    "/clicked_point",
-}
+# A missing publisher is normal.
+_OPTIONAL = {*(topic.name for topic in OPTIONAL), "/clicked_point"}
+# Similarity of a misspelled name (difflib's ratio).
+_LIKE = 0.8
 
 _REMEDIES = {
     QoSPolicyKind.RELIABILITY: "make the subscription best effort"
@@ -116,7 +112,7 @@ def check_topics(seen: Snapshot) -> Iterator[Diagnosis]:
     problems = [
         finding
         for topic in seen.topics
-        for finding in (*_type_problems(seen, topic), *_qos_problems(seen, topic))
+        for finding in (*type_problems(seen, topic), *_qos_problems(seen, topic))
     ]
     yield from problems
     joined = [t for t in seen.topics if seen.publishers(t) and seen.subscriptions(t)]
@@ -124,52 +120,6 @@ def check_topics(seen: Snapshot) -> Iterator[Diagnosis]:
         text = f"{plural(len(joined), 'topic')} connected, types and QoS match"
         yield Diagnosis(Rating.GOOD, TOPICS, "topics", text, data={"topics": joined})
     yield from _unconnected(seen)
-
-
-def _type_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:
-    ends = [*seen.publishers(topic), *seen.subscriptions(topic)]
-    types: dict[str, set[str]] = {}
-    for end in ends:
-        types.setdefault(end.type_name, set()).add(end.node_full_name)
-    if len(types) > 1:
-        who = "; ".join(f"{name}: {listed(types[name])}" for name in sorted(types))
-        yield Diagnosis(
-            Rating.PROBLEM,
-            TOPICS,
-            topic,
-            f"has {len(types)} types: {who}",
-            "they cannot communicate: rename one topic, or use the same type",
-        )
-        return
-    # Nodes of this process have no hash; before Jazzy it was a placeholder.
-    hashed = [e for e in ends if e.type_hash.startswith("RIHS")]
-    versions: dict[str, set[str]] = {}
-    for end in hashed:
-        versions.setdefault(end.type_hash, set()).add(end.node_full_name)
-    if len(versions) > 1:
-        of_hash = distros_by_hash(next(iter(types)))
-        who = " | ".join(
-            sorted(
-                f"{listed(names)} ({_definition(of_hash, each)})"
-                for each, names in versions.items()
-            )
-        )
-        yield Diagnosis(
-            Rating.PROBLEM,
-            TOPICS,
-            topic,
-            f"{next(iter(types))} has {len(versions)} definitions: {who}",
-            "they cannot communicate: install the same version of its package"
-            f" on both sides, or start Navette with {DISTRO_VARIABLE}=NAME",
-            {"hashes": {each: sorted(names) for each, names in versions.items()}},
-        )
-
-
-def _definition(distros: dict[str, list[str]], type_hash: str) -> str:
-    """Return the start of a hash, and the distributions of ROS 2 that it belongs to."""
-    known = ", ".join(distros.get(type_hash, ()))
-    start = type_hash.removeprefix("RIHS01_")[:8]
-    return f"{known or 'of no known distribution'}, hash {start}…"
 
 
 def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:
@@ -197,11 +147,15 @@ def _policies(kinds: tuple[QoSPolicyKind, ...]) -> str:
 def _unconnected(seen: Snapshot) -> Iterator[Diagnosis]:
     """Report topics with only one side, often caused by a mistyped name."""
     unread = [t for t in seen.topics if not seen.subscriptions(t)]
-    known = _BY_HAND | explained(seen)
+    known = explained(seen)
     unpublished = [t for t in seen.topics if not seen.publishers(t) and t not in known]
     for topic in unpublished:
         wanted = seen.subscriptions(topic)[0]
         instead = [t for t in unread if _has_type(seen, t, wanted.type_name)]
+        if topic in _OPTIONAL:
+            instead = get_close_matches(topic, instead, cutoff=_LIKE)
+            if not instead:
+                continue
         yield _unpublished(seen, wanted, instead)
     if unread:
         yield Diagnosis(

@@ -114,7 +114,7 @@ def _live_view() -> Diagnosis:
     """Report the process on the live view's port."""
     what = f"port {VIEW_PORT}"
     if probe("127.0.0.1", VIEW_PORT) is not PortProbe.OPEN:
-        return Diagnosis(Rating.NOTE, MACHINE, what, "free: no live view runs")
+        return Diagnosis(Rating.NOTE, MACHINE, what, "free: no live view on this port")
     process = listener(VIEW_PORT)
     if process is None:
         return Diagnosis(Rating.NOTE, MACHINE, what, "in use")
