@@ -159,8 +159,8 @@ def test_conditions_that_ros2_deprecates(context: LaunchContext) -> None:
     with pytest.warns(UserWarning, match="use IfCondition with EqualsSubstitution"):
         is_burger = LaunchConfigurationEquals("name", "burger")
     with pytest.warns(UserWarning, match="LaunchConfigurationNotEquals is deprecated"):
-        is_no_waffle = LaunchConfigurationNotEquals("name", "waffle")
+        differs = LaunchConfigurationNotEquals("name", "waffle")
     with pytest.warns(UserWarning, match="deprecated"):
         is_missing = LaunchConfigurationEquals("missing", None)
-    for condition in (is_burger, is_no_waffle, is_missing):
+    for condition in (is_burger, differs, is_missing):
         assert condition.evaluate(context)
