@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids import exact_clearances, make_outline
 from navette.navigation.planning import lattice, path_shape
+from navette.navigation.planning.body_space import ALL_POSES, OpenPoses
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_within
@@ -59,7 +60,8 @@ class DetourResult:
 class DetourPlanner:
     """Detour planner on one grid for one body.
 
-    ``unseen`` (H, W) is 1 in cells that the body does not enter in reverse.
+    ``unseen`` (H, W) is 1 in cells that the body does not enter in reverse. ``poses``
+    are all that may have the grid's margin.
     """
 
     def __init__(
@@ -69,9 +71,10 @@ class DetourPlanner:
         params: PlannerParams,
         router: GridRouter,
         unseen: NDArray[np.uint8],
+        poses: OpenPoses = ALL_POSES,
     ) -> None:
         self.grid, self.body, self.params, self.router = grid, body, params, router
-        self._unseen = unseen
+        self._unseen, self._poses = unseen, poses
         step = min(0.3, max(0.2 * body.circumscribed_m, 2 * grid.spec.resolution))
         # The sharpest bends turn by two heading steps.
         step = max(step, 2 * params.min_turning_radius_m * math.tau / Motions.headings)
@@ -213,6 +216,7 @@ class DetourPlanner:
             obstacles=grid.exact_obstacles,
             outline=make_outline(self.body.footprint),
             unseen=self._unseen,
+            poses=self._poses,
         )
         goal = lattice.LatticeGoal(
             target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL
