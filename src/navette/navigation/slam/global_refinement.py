@@ -3,8 +3,12 @@
 Each pair of overlapping scans contributes the normal equations of its corresponding
 points, linearised at the present poses, as an edge of the pose graph. The graph is
 solved and the correspondences are found again (Lu and Milios 1997, with distances along
-normals).
+normals). The assumed noise of the points begins wide, so that surfaces far apart still
+attract each other, and narrows (graduated non-convexity; Blake and Zisserman 1987,
+Yang et al. 2020). Scans that remain at another maximum of their fit are matched again.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,57 +18,61 @@ from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.point_map import PointMap, make_point_map
 from navette.navigation.slam.pose_graph import GraphEdge, optimise
 from navette.navigation.slam.refinement import sum_equations
+from navette.navigation.slam.rematching import rematch_all
 from navette.navigation.slam.scan_graph import ScanGraph
-from navette.navigation.slam.scan_points import Points
 
 Matrix = NDArray[np.float64]
 Pair = tuple[int, int]
 
-_ROUNDS = 6
-# Rounds in which the pairs are chosen, and those with the whole search radius.
-_PAIRING = (0, 1, 4)
-_WIDE = 2
+# Noise of a point in the first rounds, as multiples of the parameter.
+_WIDER = (6.0, 3.0, 2.0)
+# Rounds of a width at most, and those after which the pairs are chosen again.
+_ROUNDS, _PAIRING = 4, 2
+# Times that scans are matched again, one by one.
+_REMATCHES = 3
 # Partners of a scan: the ones just before it and some of all others near it.
 _PARTNERS = 8
 _BEFORE = 3
 _REACH_M = 6.0
 _CONVERGED_M = 1e-3
-# Weight of the measurements of the run, which come from the same scans.
-_SHARE = 0.1
 
 
 def refine_all(graph: ScanGraph, params: SlamParams) -> None:
     """Improve all poses of a graph whose loops are closed."""
     if len(graph) < 2:
         return
-    clouds = [each.points for each in graph.keys]
     surfaces = [
-        make_point_map(each, params.match_radius_m) if len(each) else None
-        for each in clouds
+        make_point_map(each.points, params.match_radius_m) if len(each.points) else None
+        for each in graph.keys
     ]
-    # The measurements of the run hold together what no pair connects.
-    known = [
-        each._replace(information=_SHARE * each.information) for each in graph.edges
-    ]
+    for width in _WIDER:
+        wide = replace(params, match_noise_m=width * params.match_noise_m)
+        _refine_jointly(graph, surfaces, wide)
+    for _ in range(_REMATCHES):
+        _refine_jointly(graph, surfaces, params)
+        if not rematch_all(graph, overlapping_pairs(graph), params):
+            break
+    _refine_jointly(graph, surfaces, params)
+
+
+def _refine_jointly(
+    graph: ScanGraph, surfaces: list[PointMap | None], params: SlamParams
+) -> None:
+    """Match all pairs at the present poses and solve the graph, several times."""
     pairs: list[Pair] = []
     for turn in range(_ROUNDS):
-        if turn in _PAIRING:
+        if turn % _PAIRING == 0:
             pairs = overlapping_pairs(graph)
-        radius = params.match_radius_m * (1.0 if turn < _WIDE else 0.5)
-        edges = [
-            edge
-            for i, j in pairs
-            if (
-                edge := _pair_edge(
-                    graph, (i, j), surfaces[i], clouds[j], radius, params
-                )
-            )
+        measured = [
+            _pair_edge(graph, pair, surfaces[pair[0]], params) for pair in pairs
         ]
-        poses = optimise(graph.poses, known + edges, steps=3).poses
+        edges = [edge for edge in measured if edge is not None]
+        # The measurements of the run hold together what no pair connects.
+        poses = optimise(graph.poses, graph.edges + edges, steps=3).poses
         moved = float(np.abs(poses - graph.poses)[:, :2].max())
         graph.poses = poses
-        if moved < _CONVERGED_M and turn > _WIDE:
-            break
+        if moved < _CONVERGED_M:
+            return
 
 
 def overlapping_pairs(graph: ScanGraph) -> list[Pair]:
@@ -94,17 +102,13 @@ def _spread_out(
 
 
 def _pair_edge(
-    graph: ScanGraph,
-    pair: Pair,
-    surface: PointMap | None,
-    points: Points,
-    radius_m: float,
-    params: SlamParams,
+    graph: ScanGraph, pair: Pair, surface: PointMap | None, params: SlamParams
 ) -> GraphEdge | None:
     """Return the measurement of scan j in the frame of scan i, if they overlap."""
+    i, j = pair
+    points = graph.keys[j].points
     if surface is None or not len(points):
         return None
-    i, j = pair
     present = graph.pose(i).inverse() @ graph.pose(j)
     information, gradient, quality = np.zeros((3, 3)), np.zeros(3), np.zeros(2)
     sum_equations(
@@ -112,7 +116,7 @@ def _pair_edge(
         points,
         np.array(present),
         params.match_noise_m,
-        radius_m,
+        surface.cell_m,
         information,
         gradient,
         quality,
@@ -122,7 +126,7 @@ def _pair_edge(
     # Where the pair has no information, the measurement is the present pose.
     damping = 1e-6 * float(np.trace(information)) + 1e-9
     x, y, yaw = -np.linalg.solve(information + damping * np.eye(3), gradient)
-    if max(abs(x), abs(y), abs(yaw)) > radius_m:
+    if max(abs(x), abs(y), abs(yaw)) > surface.cell_m:
         return None
     measured = Pose2(present.x + x, present.y + y, present.yaw + yaw)
     return GraphEdge(i, j, measured, information, True)

@@ -108,6 +108,8 @@ class LoopFinder:
             covariance = relative[target.anchor]
             if target.last > query.first or not np.isfinite(covariance[0, 0]):
                 continue
+            if not graph.has_points(target):
+                continue
             there = centers[target.first : target.last].mean(axis=0)
             spread = min(_spread(covariance), params.loop_search_max_m)
             away = math.dist(here, there)

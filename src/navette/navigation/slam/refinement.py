@@ -55,6 +55,11 @@ class Refined(NamedTuple):
     overlap: float
     error_m: float
 
+    def fit(self, noise_m: float) -> float:
+        """Return the share of corresponding points, less where they are far off."""
+        error = self.error_m / noise_m
+        return self.overlap / (1.0 + error * error)
+
 
 NO_PRIOR = PosePrior(Pose2(0.0, 0.0, 0.0), np.zeros((3, 3)))
 

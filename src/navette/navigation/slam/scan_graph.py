@@ -127,6 +127,10 @@ class ScanGraph:
             parts.append(moved_points(self.keys[node].points, placed))
         return np.concatenate(parts)
 
+    def has_points(self, chunk: ScanChunk) -> bool:
+        """Whether any scan of a chunk has an echo in range."""
+        return any(len(self.keys[node].points) for node in range(*chunk))
+
     def chunks(self, size: int) -> list[ScanChunk]:
         """Return all complete chunks of ``size`` key scans of one session."""
         ends = [*self.sessions[1:], len(self.keys)]

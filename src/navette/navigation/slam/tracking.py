@@ -28,7 +28,8 @@ SIGMAS = 3.0
 _NEAR = 0.3
 _NEAR_RAD = 0.05
 _WIDEST_M = 5.0
-_LEAST_POINTS = 10
+LEAST_POINTS = 10
+"""Points without which a scan is not matched."""
 # Share of a local map's points that are compared with a scan's free space.
 _EVERY = 4
 # Fit that a squared Mahalanobis distance of 1 from the prior costs.
@@ -104,7 +105,7 @@ def match(
     The search covers three standard deviations of the prior. It is omitted where the
     refinement converges alone.
     """
-    if len(points) < _LEAST_POINTS:
+    if len(points) < LEAST_POINTS:
         return None
     best = _refined(local, points, prior.pose, prior, params)
     covariance = inverted(prior.information)
@@ -147,5 +148,4 @@ def _fit(refined: Refined, prior: PosePrior, params: SlamParams) -> float:
     away = np.array(refined.pose) - np.array(prior.pose)
     away[2] = wrap_angle(away[2])
     unlikely = float(away @ prior.information @ away)
-    error = refined.error_m / params.match_noise_m
-    return refined.overlap / (1.0 + error * error) - _UNLIKELY * unlikely
+    return refined.fit(params.match_noise_m) - _UNLIKELY * unlikely
