@@ -61,7 +61,7 @@ from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.regions import SquareRegion
-from navette.navigation.grids.sparse import RowSpans, padded_sparse, sparse_zeros
+from navette.navigation.grids.sparse import RowSpans, SparseGrid, sparse_zeros
 from navette.navigation.grids.spec import (
     FREE,
     LETHAL,
@@ -93,7 +93,7 @@ __all__ = [
     "CellWindow",
     "NO_CELLS",
     "RowSpans",
-    "padded_sparse",
+    "SparseGrid",
     "sparse_zeros",
     "SquareRegion",
     "NO_DISCS",

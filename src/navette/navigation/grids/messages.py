@@ -1,5 +1,7 @@
 """Conversion of grids from and to messages: whole grids and windows of them."""
 
+import functools
+
 import numpy as np
 
 from navette.errors import InvalidValueError
@@ -48,10 +50,8 @@ def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
             origin is out of range.
     """
     info, position, q = msg.info, msg.info.origin.position, msg.info.origin.orientation
-    # A serialised resolution is a float32. The shortest decimal with the same float32
-    # value restores 0.1, whether the message was serialised or not.
     spec = GridSpec(
-        float(str(np.float32(info.resolution))),
+        _resolution(info.resolution),
         info.width,
         info.height,
         Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w))),
@@ -63,6 +63,15 @@ def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
             f"{spec.height} = {spec.width * spec.height}"
         )
     return cells.reshape(spec.shape), spec
+
+
+@functools.lru_cache(maxsize=16)
+def _resolution(value: float) -> float:
+    """Return the shortest decimal of a serialised resolution, which is a float32.
+
+    Thus 0.1 is restored, whether the message was serialised or not.
+    """
+    return float(str(np.float32(value)))
 
 
 def window_to_message(

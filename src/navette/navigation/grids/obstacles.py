@@ -22,9 +22,19 @@ from navette.navigation.grids.sub_cells import (
     CellMarks,
     point_radius,
 )
-from navette.navigation.grids.unseen import Layer, StartArea, unseen_points
+from navette.navigation.grids.unseen import (
+    FARTHEST_M,
+    Layer,
+    StartArea,
+    unseen_points,
+)
+from navette.navigation.grids.windows import CellWindow
 
 _PART = 64  # cells of a row that are searched at once
+# Half the edge of the square in which it matters that an earlier map was seen; the
+# robot drives a little before the next map.
+_NEAR_M = FARTHEST_M + 2.0
+_SAME_CELLS = 1e-3  # largest shift of cells, in cells, at which they are the same
 
 
 class RobotPoses(Protocol):
@@ -100,15 +110,23 @@ class ObstacleTracker:
         """Store a costmap until it is placed."""
         self._costmap, self._costmap_ns = msg, now_ns
 
-    def remember(self, msg: OccupancyGrid) -> None:
+    def remember(self, msg: OccupancyGrid, now_ns: int) -> None:
         """Use a map, in the map frame, for what the costmap does not show.
+
+        What earlier maps have shown is kept near the robot only.
 
         Raises:
             InvalidValueError: the map is invalid.
         """
         self._map = grid_from_message(msg)
         self._map_ns = _stamp_ns(msg)
-        self._seen = _seen_also(Layer(*self._map), self._seen)
+        cells, spec = self._map
+        robot = self._poses.predicted_now(now_ns)
+        near = CellWindow.whole(cells.shape)
+        if robot is not None:
+            corners = np.add.outer((-_NEAR_M, _NEAR_M), (robot.x, robot.y))
+            near = CellWindow.around(spec, corners)
+        self._seen = _seen_also(Layer(cells, spec), self._seen, near)
 
     def relocate(self) -> None:
         """Place the newest costmap again: the robot's pose in the map has jumped.
@@ -227,11 +245,12 @@ class ObstacleTracker:
         return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
 
 
-def _seen_also(now: Layer, before: Layer | None) -> Layer:
-    """Return a layer whose cells are known where they are in one of two."""
+def _seen_also(now: Layer, before: Layer | None, near: CellWindow) -> Layer:
+    """Return a layer whose cells in a window are known where they are in one of two."""
     if before is None:
         return now
-    if before.spec == now.spec and not _has_lost(now.cells, before.cells):
+    shift = _shift_of_cells(now.spec, before.spec)
+    if shift is not None and not _has_lost(now.cells, before.cells, near, *shift):
         return now
     cells = now.cells.copy()
     if before.spec == now.spec:
@@ -241,11 +260,30 @@ def _seen_also(now: Layer, before: Layer | None) -> Layer:
     return Layer(cells, now.spec)
 
 
+def _shift_of_cells(spec: GridSpec, other: GridSpec) -> tuple[int, int] | None:
+    """Return row and column in a grid of the first cell of another; None: between."""
+    if spec.resolution != other.resolution or spec.origin.yaw != other.origin.yaw:
+        return None
+    corner = spec.origin.inverse() @ other.origin
+    u, v = corner.x / spec.resolution, corner.y / spec.resolution
+    row, column = round(v), round(u)
+    return (row, column) if math.hypot(v - row, u - column) < _SAME_CELLS else None
+
+
 @kernel
-def _has_lost(now: Any, before: Any) -> bool:
-    """Return whether a cell is unknown now and was known before."""
-    for row in range(now.shape[0]):
-        new, old = now[row], before[row]
+def _has_lost(now: Any, before: Any, near: Any, down: int, right: int) -> bool:
+    """Return whether a cell in a window is unknown now and was known before.
+
+    ``down``, ``right``: row and column now of the first cell before.
+    """
+    first_row = max(near.first_row, down)
+    first = max(near.first_column, right)
+    last = max(first, min(near.last_column, right + before.shape[1]))
+    for row in range(first_row, min(near.last_row, down + before.shape[0])):
+        new, old = (
+            now[row, first:last],
+            before[row - down, first - right : last - right],
+        )
         lost = False
         for k in range(new.size):
             lost |= (new[k] == UNKNOWN) & (old[k] != UNKNOWN)

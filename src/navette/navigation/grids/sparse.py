@@ -2,11 +2,12 @@
 
 import math
 import mmap
-from typing import TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.grids.windows import CellWindow
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -14,6 +15,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 # Below this NumPy's own arrays are as good: they use large pages, which are faster.
 _LARGE_BYTES = 40 << 20
 _NO_COLUMN = 1 << 40
+_MOST_ROOM = 2000  # cells on each side of a grid into which it grows without a copy
 
 
 def sparse_zeros(shape: tuple[int, ...], dtype: type[Scalar]) -> NDArray[Scalar]:
@@ -57,20 +59,61 @@ class RowSpans:
         self.last = np.pad(self.last + left, rows, constant_values=0)
 
 
-def padded_sparse(
-    array: NDArray[Scalar], pad: Padding, written: RowSpans
-) -> NDArray[Scalar]:
-    """Return an array (H, W) of few non-zeros with zeros around, as numpy.pad does.
+class SparseGrid(Generic[Scalar]):
+    """Zeros (H, W) with unused space around them, which growing uses without a copy.
 
-    All non-zeros are within ``written``.
+    Attributes:
+        cells: (H, W) the array, a part of a larger one: replaced when it grows.
     """
-    (above, below), (left, right) = pad
-    height, width = array.shape
-    shape = (above + height + below, left + width + right)
-    padded = sparse_zeros(shape, array.dtype.type)
-    for row in np.flatnonzero(written.first < written.last).tolist():
-        first = int(written.first[row])
-        part = array[row, first : written.last[row]]
-        columns = np.flatnonzero(part)
-        padded[above + row, left + first + columns] = part[columns]
-    return padded
+
+    def __init__(self, shape: tuple[int, int], dtype: type[Scalar]) -> None:
+        self._dtype = dtype
+        self._reserve(shape)
+
+    def clear(self) -> None:
+        """Replace the array by zeros."""
+        self._reserve(self.cells.shape)
+
+    def grow(self, pad: Padding, written: RowSpans) -> None:
+        """Add zeros around, as :func:`numpy.pad` does.
+
+        Args:
+            pad: cells to add.
+            written: contains all non-zeros.
+        """
+        (above, below), (left, right) = pad
+        before = self.cells
+        height, width = before.shape
+        shape = (above + height + below, left + width + right)
+        row, column = self._row - above, self._column - left
+        rows, columns = self._space.shape
+        has_space = row >= 0 and row + shape[0] <= rows
+        if has_space and column >= 0 and column + shape[1] < columns:
+            self._use(row, column, shape)
+            return
+        self._reserve(shape)
+        _copy_non_zeros(before, self.cells, above, left, written.first, written.last)
+
+    def _reserve(self, shape: tuple[int, ...]) -> None:
+        height, width = shape
+        room = min(max(shape) // 2, _MOST_ROOM)
+        # One column more, so that kernels always get a part of the rows.
+        size = (height + 2 * room, width + 2 * room + 1)
+        self._space = sparse_zeros(size, self._dtype)
+        self._use(room, room, (height, width))
+
+    def _use(self, row: int, column: int, shape: tuple[int, int]) -> None:
+        self._row, self._column = row, column
+        rows, columns = slice(row, row + shape[0]), slice(column, column + shape[1])
+        self.cells: NDArray[Scalar] = self._space[rows, columns]
+
+
+@kernel
+def _copy_non_zeros(
+    array: Any, padded: Any, above: int, left: int, first: Any, last: Any
+) -> None:
+    """Copy the non-zeros of each row: a page without one stays without memory."""
+    for row in range(first.size):
+        for column in range(first[row], last[row]):
+            if array[row, column] != 0:
+                padded[above + row, left + column] = array[row, column]

@@ -29,6 +29,7 @@ Points = NDArray[np.float64]
 NO_POINTS = np.empty((0, 2))
 
 _NO_CELL = np.iinfo(np.int64).min
+_PART = 64  # cells of a row that are searched at once
 
 
 def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int64]:
@@ -265,10 +266,26 @@ def _cell_points(masks: Any, cells: Any, frame: Any, circle: Any) -> Points:
 
 def _lethal_marked(masks: Masks, cells: Cells, window: CellWindow) -> NDArray[np.int64]:
     """Return the lethal cells (M, 2) of a window that have marked points."""
-    part = cells[window.slices]
-    lethal_at = np.flatnonzero(part >= LETHAL)
-    rows, columns = np.divmod(lethal_at, max(part.shape[1], 1))
-    rows += window.first_row
-    columns += window.first_column
-    is_marked = masks[rows, columns] != 0
-    return np.column_stack([rows[is_marked], columns[is_marked]])
+    found: NDArray[np.int64] = _search_lethal(masks, cells, window)
+    return found
+
+
+@kernel
+def _search_lethal(masks: Any, cells: Any, window: CellWindow) -> Any:
+    found = np.empty((1024, 2), np.int64)
+    count = 0
+    for row in range(window.first_row, window.last_row):
+        for first in range(window.first_column, window.last_column, _PART):
+            line = cells[row, first : min(window.last_column, first + _PART)]
+            highest = line[0]
+            for k in range(line.size):  # vectorised: most parts have no lethal cell
+                highest = max(highest, line[k])
+            if highest < LETHAL:
+                continue
+            if count + _PART > found.shape[0]:
+                found = np.concatenate((found, np.empty_like(found)))
+            for k in range(line.size):
+                if line[k] >= LETHAL and masks[row, first + k] != 0:
+                    found[count, 0], found[count, 1] = row, first + k
+                    count += 1
+    return found[:count].copy()

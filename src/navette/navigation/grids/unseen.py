@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 _PART_M = 0.02
 _MOST_PARTS = 16  # per side of a large cell
 # No robot backs into space that it cannot see faster than it stops in this distance.
-_FARTHEST_M = 10.0
+FARTHEST_M = 10.0
 
 
 class Layer(NamedTuple):
@@ -79,7 +79,7 @@ def unseen_points(
         start.outline.radius_m + start.seam_m,
         start.seam_m,
         np.array((around.x, around.y)),
-        min(reach_m, _FARTHEST_M),
+        min(reach_m, FARTHEST_M),
     )
 
 

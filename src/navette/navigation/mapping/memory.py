@@ -17,6 +17,7 @@ from navette.navigation.grids import (
     Changes,
     GridSpec,
     RowSpans,
+    SparseGrid,
     SquareRegion,
     accumulate,
     cells_in_footprint,
@@ -24,8 +25,6 @@ from navette.navigation.grids import (
     mark_points,
     marked_points,
     merge,
-    padded_sparse,
-    sparse_zeros,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.marked_points import MarkedPoints
@@ -114,7 +113,7 @@ class MapMemory:
         else:
             self.spec = self._initial_spec()
             self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
-        self._masks = sparse_zeros(self.spec.shape, np.uint64)
+        self._masks = SparseGrid(self.spec.shape, np.uint64)
         self._vanished = VanishedCells(self.spec.shape)
         self._written = RowSpans(self.spec.height)  # of the two above
         self._marked = MarkedPoints()
@@ -135,7 +134,7 @@ class MapMemory:
             return
         cleared = region.mask(self.spec)
         self._cells[cleared] = UNKNOWN if self._base is None else self._base[cleared]
-        self._masks[cleared] = 0
+        self._masks.cells[cleared] = 0
         if self._log_odds is not None:
             self._log_odds[cleared] = self._evidence_of(self._cells[cleared])
         self._note_change(CellWindow.whole(self.spec.shape))
@@ -164,7 +163,7 @@ class MapMemory:
             return
         window = CellWindow.around(self.spec, points, 1)
         self._written.add(window)
-        cells = mark_points(self._masks, self.spec, points)
+        cells = mark_points(self._masks.cells, self.spec, points)
         rows, columns = cells.T
         self._cells[rows, columns] = LETHAL
         if self._log_odds is not None:
@@ -262,7 +261,7 @@ class MapMemory:
         A lethal cell without such a point was lethal in a loaded map, or in a costmap
         without points.
         """
-        return self._marked.points(self._masks, self.spec, self._cells)
+        return self._marked.points(self._masks.cells, self.spec, self._cells)
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
         """Count obstacle cells near the robot that contradict the map."""
@@ -279,12 +278,15 @@ class MapMemory:
         """Load or compile the kernels before the first costmap."""
         if self._own is not None:
             return  # the user's method is called with costmaps only
-        trial = MapMemory(replace(self.params, size_m=self.params.resolution_m))
-        cells = np.full((1, 1), LETHAL, np.int8)
-        spec = GridSpec(self.params.resolution_m, 1, 1, trial.spec.origin)
+        edge = self.params.resolution_m
+        trial = MapMemory(replace(self.params, size_m=2 * edge, growth_m=10 * edge))
+        cells = np.full((2, 3), LETHAL, np.int8)  # wider than the map, which grows
         here = trial.spec.origin
-        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0)
+        spec = GridSpec(edge, 3, 2, here)
+        hits = here.apply(np.array([(0.5, 0.5), (1.5, 0.5)]) * edge)
+        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0, hits=hits)
         trial.fuse(costmap)
+        trial.fuse(costmap)  # which finds marked cells
         trial.changes(costmap)
 
     def _initial_spec(self) -> GridSpec:
@@ -313,7 +315,7 @@ class MapMemory:
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         if self._base is not None:
             self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
-        self._masks = padded_sparse(self._masks, pad, self._written)
+        self._masks.grow(pad, self._written)
         self._vanished.grow(pad, self._written)
         self._written.grow(pad)
         if self._log_odds is not None:
@@ -327,7 +329,7 @@ class MapMemory:
         if costmap.hits is None or self.params.fusion != "overwrite":
             return np.empty((0, 2), np.int64)
         points, which, lethal = marked_points(
-            self._masks, self.spec, self._cells, window
+            self._masks.cells, self.spec, self._cells, window
         )
         middle = middles(points, which, len(lethal))
         measured = have_echo(middle, costmap.hits)
@@ -343,16 +345,16 @@ class MapMemory:
         )
         gone = self._vanished.update(lethal, possible)
         self._cells[gone[:, 0], gone[:, 1]] = FREE
-        self._masks[gone[:, 0], gone[:, 1]] = 0
+        self._masks.cells[gone[:, 0], gone[:, 1]] = 0
         kept = self._cells[lethal[:, 0], lethal[:, 1]] >= LETHAL
         return np.asarray(lethal[kept])
 
     def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
         """Store where beams ended; return the cells (M, 2) with these points."""
         if hits is not None:
-            return mark_points(self._masks, self.spec, hits)
+            return mark_points(self._masks.cells, self.spec, hits)
         # Lethal cells of this costmap have no points, and older ones may mislead.
-        self._masks = sparse_zeros(self.spec.shape, np.uint64)
+        self._masks.clear()
         self._marked.clear()
         return None
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids import RowSpans, padded_sparse, sparse_zeros
+from navette.navigation.grids import RowSpans, SparseGrid
 
 Points = NDArray[np.float64]
 Values = NDArray[np.float64]
@@ -50,8 +50,8 @@ class VanishedCells:
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self._passes = sparse_zeros(shape, np.uint8)
-        self._refuted = sparse_zeros(shape, np.uint32)
+        self._passes = SparseGrid(shape, np.uint8)
+        self._refuted = SparseGrid(shape, np.uint32)
         self.pending = 0
         """Number of cells that beams of the last scan passed, and that are not free."""
 
@@ -59,14 +59,14 @@ class VanishedCells:
         self, pad: tuple[tuple[int, int], tuple[int, int]], written: RowSpans
     ) -> None:
         """Add cells around, as :func:`numpy.pad` does."""
-        self._passes = padded_sparse(self._passes, pad, written)
-        self._refuted = padded_sparse(self._refuted, pad, written)
+        self._passes.grow(pad, written)
+        self._refuted.grow(pad, written)
 
     def forget(self, cells: NDArray[np.int64]) -> None:
         """Start again for cells (N, 2) with an echo."""
         rows, columns = cells.T
-        self._passes[rows, columns] = 0
-        self._refuted[rows, columns] = 0
+        self._passes.cells[rows, columns] = 0
+        self._refuted.cells[rows, columns] = 0
 
     def update(self, cells: NDArray[np.int64], possible: Bits) -> NDArray[np.int64]:
         """Return the cells (K, 2) whose obstacles are gone.
@@ -78,10 +78,11 @@ class VanishedCells:
         """
         passed = possible != _ALL
         rows, columns = cells[passed].T
-        self._refuted[rows, columns] |= ~possible[passed]
-        passes = np.minimum(self._passes[rows, columns], 254) + 1
-        self._passes[rows, columns] = passes
-        gone = (passes >= _TIMES) & (self._refuted[rows, columns] == _ALL)
+        refuted = self._refuted.cells[rows, columns] | ~possible[passed]
+        self._refuted.cells[rows, columns] = refuted
+        passes = np.minimum(self._passes.cells[rows, columns], 254) + 1
+        self._passes.cells[rows, columns] = passes
+        gone = (passes >= _TIMES) & (refuted == _ALL)
         self.pending = int(np.count_nonzero(~gone))
         vanished: NDArray[np.int64] = np.column_stack([rows[gone], columns[gone]])
         self.forget(vanished)

@@ -86,7 +86,7 @@ class MotionNode(StageNode):
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map for what the costmap does not show."""
         check_frame("map", msg.header.frame_id, self.params.map_frame)
-        self._obstacles.remember(msg)
+        self._obstacles.remember(msg, self._now_ns)
 
     def on_keepout_zones(self, msg: OccupancyGrid) -> None:
         """Keep clear of zones as of obstacles."""

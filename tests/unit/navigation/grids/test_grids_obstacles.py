@@ -8,6 +8,7 @@ from navette.geometry import Pose2
 from navette.navigation.grids import (
     LETHAL,
     UNKNOWN,
+    CellWindow,
     GridSpec,
     Layer,
     cell_points,
@@ -109,7 +110,8 @@ def test_cells_that_a_map_has_shown_stay_seen() -> None:
     before[0] = UNKNOWN
     now = np.full(spec.shape, UNKNOWN, np.int8)
     now[1, 2] = LETHAL
-    seen = _seen_also(Layer(now, spec), Layer(before, spec))
+    whole = CellWindow.whole(spec.shape)
+    seen = _seen_also(Layer(now, spec), Layer(before, spec), whole)
     assert (seen.cells[0] == UNKNOWN).all()
     assert (seen.cells[1:] != UNKNOWN).all()
     assert seen.cells[1, 2] == LETHAL, "what is known now counts"
@@ -120,15 +122,37 @@ def test_a_map_that_shows_no_less_is_used_as_it_is() -> None:
     spec = GridSpec(0.1, 6, 4, Pose2(0.0, 0.0, 0.0))
     first = Layer(np.full(spec.shape, UNKNOWN, np.int8), spec)
     more = Layer(np.zeros(spec.shape, np.int8), spec)
-    assert _seen_also(first, None) is first
-    assert _seen_also(more, first) is more
+    whole = CellWindow.whole(spec.shape)
+    assert _seen_also(first, None, whole) is first
+    assert _seen_also(more, first, whole) is more
 
 
 def test_a_map_that_grew_keeps_what_the_smaller_one_has_shown() -> None:
     small = GridSpec(0.1, 6, 4, Pose2(0.0, 0.0, 0.0))
     large = GridSpec(0.1, 26, 24, Pose2(-1.0, -1.0, 0.0))
     now = Layer(np.full(large.shape, UNKNOWN, np.int8), large)
-    seen = _seen_also(now, Layer(np.zeros(small.shape, np.int8), small))
+    before = Layer(np.zeros(small.shape, np.int8), small)
+    seen = _seen_also(now, before, CellWindow.whole(large.shape))
     inside = seen.cells[10:14, 10:16]
     assert (inside != UNKNOWN).all()
     assert (seen.cells != UNKNOWN).sum() == inside.size
+    for window, has_lost in (
+        (CellWindow(13, 24, 15, 26), True),
+        (CellWindow(14, 24, 0, 26), False),
+        (CellWindow(0, 24, 16, 26), False),
+        (CellWindow(0, 24, 0, 10), False),
+        (CellWindow(0, 11, 0, 11), True),
+    ):
+        assert (_seen_also(now, before, window) is not now) == has_lost, window
+
+
+def test_a_map_that_only_grew_is_used_as_it_is() -> None:
+    """Growth must not cost a copy of the whole map."""
+    small = GridSpec(0.1, 6, 4, Pose2(0.3, 0.2, 0.5))
+    large = GridSpec(0.1, 9, 11, small.origin @ Pose2(-0.2, -0.4, 0.0))
+    cells = np.full(large.shape, UNKNOWN, np.int8)
+    cells[4:8, 2:8] = 0
+    now, before = Layer(cells, large), Layer(np.zeros(small.shape, np.int8), small)
+    assert _seen_also(now, before, CellWindow.whole(large.shape)) is now
+    cells[7, 7] = UNKNOWN
+    assert _seen_also(now, before, CellWindow.whole(large.shape)).cells[7, 7] == 0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from navette.navigation.grids import CellWindow, RowSpans, padded_sparse, sparse_zeros
+from navette.navigation.grids import CellWindow, RowSpans, SparseGrid, sparse_zeros
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (8000, 8000)])
@@ -17,27 +17,46 @@ def test_zeros_of_any_size_are_arrays_for_kernels(shape: tuple[int, int]) -> Non
     assert zeros[1].sum() == 7
 
 
-def test_padding_equals_that_of_numpy() -> None:
+def test_growth_equals_numpys_padding() -> None:
+    """Within the space around the grid, beyond it on each side, and in between."""
     rng = np.random.default_rng(1)
-    array = rng.integers(0, 2**63, (40, 30)).astype(np.uint64)
-    array[rng.random(array.shape) < 0.95] = 0
-    pad = ((3, 0), (5, 7))
-    whole = RowSpans(40)
-    whole.add(CellWindow.whole(array.shape))
-    padded = padded_sparse(array, pad, whole)
-    np.testing.assert_array_equal(padded, np.pad(array, pad))
+    for pad in (
+        ((3, 0), (5, 7)),
+        ((30, 0), (0, 0)),
+        ((0, 30), (0, 0)),
+        ((0, 0), (30, 0)),
+        ((0, 0), (0, 30)),
+        ((20, 20), (20, 20)),
+    ):
+        grid = SparseGrid((40, 30), np.uint64)
+        grid.cells[:] = rng.integers(0, 2**63, (40, 30)).astype(np.uint64)
+        grid.cells[rng.random((40, 30)) < 0.95] = 0
+        whole = RowSpans(40)
+        whole.add(CellWindow.whole((40, 30)))
+        expected = np.pad(grid.cells, pad)
+        grid.grow(pad, whole)
+        np.testing.assert_array_equal(grid.cells, expected)
+        assert not grid.cells.flags.c_contiguous, "kernels are compiled for one layout"
 
 
-def test_only_what_was_written_is_copied_when_an_array_grows_again() -> None:
-    array = np.zeros((40, 30), np.uint64)
+def test_only_what_was_written_is_copied_when_a_grid_grows_again() -> None:
+    grid = SparseGrid((40, 30), np.uint8)
     written = RowSpans(40)
     for window, pad in (
         (CellWindow(5, 9, 20, 30), ((2, 0), (0, 10))),
-        (CellWindow(6, 12, 0, 4), ((0, 3), (5, 0))),
-        (CellWindow(7, 8, 39, 40), ((1, 1), (1, 1))),
+        (CellWindow(6, 12, 0, 4), ((0, 30), (5, 0))),
+        (CellWindow(7, 8, 39, 40), ((1, 1), (100, 1))),
     ):
-        array[window.slices] = 9
+        grid.cells[window.slices] = 9
         written.add(window)
-        before, array = array, padded_sparse(array, pad, written)
-        np.testing.assert_array_equal(array, np.pad(before, pad))
+        before = grid.cells.copy()
+        grid.grow(pad, written)
+        np.testing.assert_array_equal(grid.cells, np.pad(before, pad))
         written.grow(pad)
+
+
+def test_a_cleared_grid_keeps_its_extent() -> None:
+    grid = SparseGrid((4, 5), np.uint8)
+    grid.cells[:] = 1
+    grid.clear()
+    np.testing.assert_array_equal(grid.cells, np.zeros((4, 5), np.uint8))
