@@ -334,6 +334,28 @@ def test_the_same_id_twice_is_rejected(make: Make) -> None:
     assert not pair.send(goal_uuid=goal_id).accepted
 
 
+def test_a_received_status_stays_as_it_was(graph: GraphHarness) -> None:
+    """The server does not copy the states of its goals for each message."""
+    seen: list[tuple[list[int], list[int]]] = []
+
+    def change(message: GoalStatusArray) -> None:
+        ids = [int(each.goal_info.goal_id.uuid[0]) for each in message.status_list]
+        seen.append(([each.status for each in message.status_list], ids))
+        for each in message.status_list:
+            each.status = 0
+            each.goal_info.goal_id.uuid = [0] * 16
+
+    pair = Pair(graph, count_up)
+    pair.client_node.create_subscription(
+        GoalStatusArray, "fib/_action/status", change, 10
+    )
+    first, second = (pair.send(goal_uuid=UUID(uuid=[n] * 16)) for n in (1, 2))
+    pair.wait(second.get_result_async())
+    assert [status for status, _ in seen] == [[1], [2], [4], [4, 1], [4, 2], [4, 4]]
+    assert [ids for _, ids in seen][-1] == [1, 2]
+    assert (first.status, second.status) == (S.STATUS_SUCCEEDED,) * 2
+
+
 def test_status_topic(make: Make, graph: GraphHarness) -> None:
     statuses = graph.collect("/fib/_action/status", GoalStatusArray, latched=True)
     make().send()

@@ -273,10 +273,14 @@ class ActionClient(Waitable[Any]):
         return None if callback is None else callback(message)
 
     def _on_status(self, message: GoalStatusArray) -> None:
-        for each in message.status_list:
+        missing = len(self._goals)
+        for each in reversed(message.status_list):  # the newest goals are at the end
+            if not missing:
+                return
             key = bytes(each.goal_info.goal_id.uuid)
             handle = self._goals.get(key)
             if handle is not None:
+                missing -= 1
                 handle.status = each.status
                 if not is_active(each.status):
                     del self._goals[key]

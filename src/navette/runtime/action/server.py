@@ -217,15 +217,13 @@ class ActionServer(Waitable[Any]):
         self._feedback.publish(message(goal_id=goal_id, feedback=feedback))
 
     def publish_status(self) -> None:
-        """Publish the states of all stored goals."""
-        self._status.publish(
-            GoalStatusArray(
-                status_list=[
-                    GoalStatus(goal_info=goal.goal_info, status=goal.status)
-                    for goal in self._goals.values()
-                ]
-            )
-        )
+        """Publish the states of all stored goals.
+
+        A message has all goals of the last ``result_timeout``, hundreds if goals are
+        short: their states are not copied.
+        """
+        states = [goal.status_message for goal in self._goals.values()]
+        self._status.hand_over(GoalStatusArray(status_list=states))
 
     def set_result(self, goal_handle: ServerGoalHandle, result: Any) -> None:
         """Respond to the requests for the goal's result; only the first result counts.

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from navette.msgs import copy_message
 from navette.msgs.action_msgs.msg import GoalInfo, GoalStatus
 from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.runtime.action.goal_states import GoalEvent, is_active, next_status
@@ -39,6 +40,7 @@ class ServerGoalHandle:
         self._goal_request = goal_request
         self._status = GoalStatus.STATUS_ACCEPTED
         self._destroyed = False
+        self._status_message = self._new_status_message()
         #: The response to get_result requests.
         self.result: Future[Any] = Future()
 
@@ -76,6 +78,11 @@ class ServerGoalHandle:
     @property
     def status(self) -> int:
         return GoalStatus.STATUS_UNKNOWN if self._destroyed else self._status
+
+    @property
+    def status_message(self) -> GoalStatus:
+        """The present state; another object after each change, and never changed."""
+        return self._status_message
 
     def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
         """Run the execute callback (default: the server's) as a task."""
@@ -119,6 +126,7 @@ class ServerGoalHandle:
         if self._destroyed:
             return
         self._status = next_status(self._status, event)
+        self._status_message = self._new_status_message()
         self._action_server.publish_status()
         if not self.is_active:
             self._action_server.notify_goal_done(self)
@@ -126,6 +134,11 @@ class ServerGoalHandle:
     def destroy(self) -> None:
         """Invalidate the handle; later calls have no effect."""
         self._destroyed = True
+
+    def _new_status_message(self) -> GoalStatus:
+        # A copy: programs can change the goal's id and stamp.
+        info = copy_message(self._goal_info)
+        return GoalStatus(goal_info=info, status=self._status)
 
     def _respond(self, response: Any) -> None:
         if response is not None:
