@@ -7,9 +7,9 @@ The text of a template may contain ``$package``, ``$node``, …, and its file na
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from string import Template
-from xml.sax.saxutils import escape
 
 from navette.errors import FileFormatError, InvalidNameError
 from navette.ros2.workspace.manifest import FILE_NAME
@@ -91,7 +91,7 @@ def _about_values(about: PackageAbout | None) -> dict[str, str]:
         "maintainer": about.maintainer,
         "email": about.email,
     }
-    as_xml = {key: escape(text, {'"': "&quot;"}) for key, text in texts.items()}
+    as_xml = {key: escape(text) for key, text in texts.items()}
     return as_xml | {f"{key}_literal": repr(text) for key, text in texts.items()}
 
 
