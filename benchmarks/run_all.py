@@ -13,6 +13,7 @@ import os
 import platform
 import subprocess
 import sys
+import tempfile
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -52,10 +53,17 @@ def _version(name: str) -> str:
         return "not installed"
 
 
-def run(name: str) -> dict[str, Any]:
-    """Run one benchmark in its own process."""
+def run(name: str, bytecode: str) -> dict[str, Any]:
+    """Run one benchmark in its own process.
+
+    ``bytecode``: folder of the compiled sources, which pip writes for a user.
+    """
     command = [sys.executable, str(HERE / f"bench_{name}.py"), "--json"]
-    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
+    environment = {**os.environ, "PYTHONPYCACHEPREFIX": bytecode}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    done = subprocess.run(
+        command, check=True, stdout=subprocess.PIPE, text=True, env=environment
+    )
     # Some peers print to stdout: search for the JSON object from the end.
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     found: dict[str, Any] = json.loads(lines[-1])
@@ -72,10 +80,11 @@ def main() -> None:
         results = json.loads(RESULTS.read_text(encoding="utf-8"))
     if not options.page:
         results["machine"] = machine()
-        for name in BENCHMARKS:
-            if options.only in name:
-                print(f"{name} …", file=sys.stderr, flush=True)
-                results["benchmarks"][name] = run(name)
+        with tempfile.TemporaryDirectory() as bytecode:
+            for name in BENCHMARKS:
+                if options.only in name:
+                    print(f"{name} …", file=sys.stderr, flush=True)
+                    results["benchmarks"][name] = run(name, bytecode)
         ordered = {
             k: results["benchmarks"][k]
             for k in BENCHMARKS
