@@ -3,7 +3,7 @@
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, DataTexture,
   DirectionalLight, DoubleSide, Group, Line, LineBasicMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, NearestFilter, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Scene, ShapeUtils,
+  MeshLambertMaterial, Matrix4, NearestFilter, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Quaternion, Scene, ShapeUtils,
   SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
   type Material, type Object3D, type Texture,
 } from "three";
@@ -13,6 +13,7 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import type { Transform } from "../transforms/transform";
+import { PointLayer } from "./point_layer";
 import { rgba, type Colour, type Label, type Lines, type Points as PointSet, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import type { DrawItem, Ray, Renderer, Viewpoint } from "./renderer";
 import { isSoftwareGl } from "./software_gl";
@@ -23,8 +24,13 @@ const LAYER_M = 0.002;
 /** Pixels per metre at which signs have their size; they scale with the view. */
 const MOST_RATIO = 1.5;
 
-/** Of a cloud, if the processor draws: a point costs it about 1 µs in every frame. */
-const MOST_SOFTWARE_POINTS = 30_000;
+const ONES = new Vector3(1, 1, 1);
+
+/** Without a graphics card, a view that moves over so many points has half as many pixels a side, until it stands. */
+const MANY_POINTS = 5000;
+const COARSE = 0.5;
+const STANDS_MS = 250;
+const FOLLOWING_PX = 12;
 
 /** An object of three.js and what is freed with it. */
 interface Built {
@@ -36,18 +42,26 @@ interface Built {
 
 export class ThreeRenderer implements Renderer {
   readonly #gl: WebGLRenderer;
-  readonly #isSoftware = isSoftwareGl();
+  /** Where WebGL is drawn by the processor. */
+  readonly #points: PointLayer | null;
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD_DEG, 1, 0.1, 2000);
   readonly #built = new Map<Primitive, Built>();
   #width = 0;
   #height = 0;
+  #ratio = 0;
+  #view: Viewpoint | null = null;
+  #movedMs = -Infinity;
+  #pointCount = 0;
+  #timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     readonly canvas: HTMLCanvasElement,
-    invalidate: () => void,
+    private readonly invalidate: () => void,
   ) {
-    this.#gl = new WebGLRenderer({ canvas, antialias: !this.#isSoftware, powerPreference: "high-performance" });
+    this.#points = isSoftwareGl() ? new PointLayer() : null;
+    this.#gl = new WebGLRenderer({ canvas, antialias: this.#points === null, powerPreference: "high-performance" });
+    if (this.#points) this.#scene.add(this.#points.object);
     this.#camera.up.set(0, 0, 1);
     this.#scene.add(new AmbientLight(0xffffff, 2));
     const sun = new DirectionalLight(0xffffff, 1.8);
@@ -57,18 +71,27 @@ export class ThreeRenderer implements Renderer {
   }
 
   draw(items: readonly DrawItem[], viewpoint: Viewpoint, background: string): void {
+    this.#note(viewpoint);
     this.#fit();
     this.#place(viewpoint);
+    this.#pointCount = 0;
     this.#scene.background = colourOf(background);
     const used = new Set<Primitive>();
     const perPx = 1 / viewpoint.scale;
+    this.#points?.begin(this.#camera, this.canvas.width, this.canvas.height);
     items.forEach(({ part, fixed_T_part, opacity }, order) => {
       for (const primitive of part.primitives) {
         if (used.has(primitive)) continue;
+        const lift = LAYER_M * order * Math.min(1, 20 * perPx);
+        if (this.#points && primitive.kind === "points" && opacity * rgba(primitive.colour)[3] === 1) {
+          this.#pointCount += primitive.positions.length / 3;
+          this.#points.draw(primitive, matrixOf(fixed_T_part, lift), primitive.sizePx * this.#gl.getPixelRatio());
+          continue;
+        }
         used.add(primitive);
         const built = this.#objectOf(primitive);
         if (!built) continue;
-        moveTo(built.object, fixed_T_part, LAYER_M * order * Math.min(1, 20 * perPx));
+        moveTo(built.object, fixed_T_part, lift);
         built.object.renderOrder = order;
         if (built.sizePx > 0) built.object.children[0]?.scale.setScalar(built.sizePx * perPx);
         for (const material of built.materials) fade(material, opacity);
@@ -80,6 +103,7 @@ export class ThreeRenderer implements Renderer {
       free(built);
       this.#built.delete(primitive);
     }
+    this.#points?.end();
     this.#gl.render(this.#scene, this.#camera);
   }
 
@@ -101,15 +125,32 @@ export class ThreeRenderer implements Renderer {
   dispose(): void {
     for (const built of this.#built.values()) free(built);
     this.#built.clear();
+    clearTimeout(this.#timer);
+    this.#points?.dispose();
     this.#gl.dispose();
     this.#gl.forceContextLoss();
   }
 
+  get #isCoarse(): boolean {
+    return this.#points !== null && this.#pointCount > MANY_POINTS && performance.now() - this.#movedMs < STANDS_MS;
+  }
+
+  /** Note when the view moves; draw in full when it stands. */
+  #note(viewpoint: Viewpoint): void {
+    const before = this.#view;
+    this.#view = { ...viewpoint };
+    if (!before || !isFarFrom(before, viewpoint)) return;
+    this.#movedMs = performance.now();
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(this.invalidate, STANDS_MS + 50);
+  }
+
   #fit(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === this.#width && height === this.#height) return;
-    [this.#width, this.#height] = [Math.max(1, width), Math.max(1, height)];
-    this.#gl.setPixelRatio(Math.min(devicePixelRatio || 1, MOST_RATIO));
+    const ratio = Math.min(devicePixelRatio || 1, MOST_RATIO) * (this.#isCoarse ? COARSE : 1);
+    if (width === this.#width && height === this.#height && ratio === this.#ratio) return;
+    [this.#width, this.#height, this.#ratio] = [Math.max(1, width), Math.max(1, height), ratio];
+    this.#gl.setPixelRatio(ratio);
     this.#gl.setSize(this.#width, this.#height, false);
     this.#camera.aspect = this.#width / this.#height;
     this.#camera.updateProjectionMatrix();
@@ -130,12 +171,18 @@ export class ThreeRenderer implements Renderer {
   #objectOf(primitive: Primitive): Built | null {
     const known = this.#built.get(primitive);
     if (known) return known;
-    const built = build(this.#isSoftware && primitive.kind === "points" ? thinned(primitive, MOST_SOFTWARE_POINTS) : primitive);
+    const built = build(primitive);
     if (!built) return null;
     this.#built.set(primitive, built);
     this.#scene.add(built.object);
     return built;
   }
+}
+
+/** Whether the view was turned, zoomed or moved by a hand: a view that follows the robot moves less. */
+function isFarFrom(before: Viewpoint, { centre: [x, y], scale, azimuth, elevation }: Viewpoint): boolean {
+  const movedPx = scale * Math.hypot(x - before.centre[0], y - before.centre[1]);
+  return movedPx > FOLLOWING_PX || scale !== before.scale || azimuth !== before.azimuth || elevation !== before.elevation;
 }
 
 function build(primitive: Primitive): Built | null {
@@ -171,22 +218,6 @@ function rasterOf({ pose, widthM, heightM, columns, rows, pixels }: Raster): Bui
   const material = flat({ map: texture });
   const geometry = new PlaneGeometry(widthM, heightM).translate(widthM / 2, heightM / 2, 0);
   return wrap(new Mesh(geometry, material), pose, [material]);
-}
-
-/** Every so many points. */
-function thinned(points: PointSet, most: number): PointSet {
-  const { positions, colours } = points;
-  const step = Math.ceil(positions.length / 3 / most);
-  if (step < 2) return points;
-  const count = Math.ceil(positions.length / 3 / step);
-  const fewer = new Float32Array(3 * count);
-  const fewerColours = colours && new Uint8Array(3 * count);
-  for (let index = 0; index < count; index++) {
-    const from = 3 * step * index;
-    fewer.set(positions.subarray(from, from + 3), 3 * index);
-    fewerColours?.set(colours!.subarray(from, from + 3), 3 * index);
-  }
-  return { ...points, positions: fewer, ...(fewerColours && { colours: fewerColours }) };
 }
 
 function pointsOf({ positions, colours, colour, sizePx }: PointSet): Built {
@@ -341,6 +372,10 @@ function fade(material: Material, opacity: number): void {
 function moveTo(object: Object3D, { translation: [x, y, z], rotation }: Transform, lift: number): void {
   object.position.set(x, y, z + lift);
   object.quaternion.set(...rotation);
+}
+
+function matrixOf({ translation: [x, y, z], rotation }: Transform, lift: number): Matrix4 {
+  return new Matrix4().compose(new Vector3(x, y, z + lift), new Quaternion(...rotation), ONES);
 }
 
 function free({ object, materials }: Built): void {
