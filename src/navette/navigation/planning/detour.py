@@ -71,6 +71,7 @@ class DetourPlanner:
         params: PlannerParams,
         router: GridRouter,
         unseen: NDArray[np.uint8],
+        *,
         poses: OpenPoses = ALL_POSES,
     ) -> None:
         self.grid, self.body, self.params, self.router = grid, body, params, router

@@ -141,7 +141,7 @@ class MarginPlanner:
         params = replace(self.params, max_expansions=max_expansions)
         unseen = self.map.unseen(self.put_down_at or start)
         return DetourPlanner(
-            grid, self.map.body, params, self.router, unseen, self.poses
+            grid, self.map.body, params, self.router, unseen, poses=self.poses
         )
 
 
