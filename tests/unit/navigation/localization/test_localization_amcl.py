@@ -12,6 +12,7 @@ from navette.navigation.localization.amcl import (
     AmclParams,
     LikelihoodField,
     ParticleFilter,
+    global_search,
 )
 from navette.navigation.localization.amcl.confidence import LocalizationState
 from navette.navigation.localization.amcl.estimate import heaviest_cluster
@@ -122,6 +123,24 @@ def test_the_search_of_the_map_finds_the_pose_first() -> None:
         assert pose.distance_to(Pose2(*best)) < 0.1
         assert abs(angle_difference(best[2], pose.yaw)) < 0.05
     assert len(search_map(field(), np.empty((0, 2))).poses) == 0
+
+
+@pytest.mark.parametrize("blocks", [40_000, 5_000])
+def test_the_search_of_a_large_map_scores_the_best_blocks_only(
+    blocks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The bounds are lower here, so that a small map is a large one."""
+    monkeypatch.setattr(global_search, "_MOST_BLOCKS", blocks)
+    monkeypatch.setattr(global_search, "_MOST_POSES", 8_000)
+    monkeypatch.setattr(global_search, "_MOST_CELLS", 8_000 // 48)
+    grid = field()
+    assert len(grid.free) > 100 * 8_000 // 48
+    for pose in (at(2.0, 3.5, 2.0), at(7.0, 2.0, -1.0), at(8.1, 3.3, 0.4)):
+        points = cast(pose)
+        assert len(global_search._coarse_poses(grid, points)) <= 8_000
+        best = search_map(grid, points).poses[0]
+        assert pose.distance_to(Pose2(*best)) < 0.1
+        assert abs(angle_difference(best[2], pose.yaw)) < 0.05
 
 
 def test_motion_spreads_as_the_model_states() -> None:

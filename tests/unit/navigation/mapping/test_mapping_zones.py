@@ -155,6 +155,34 @@ def test_speed_limits_by_type_and_scale(
     assert {each.percentage for each in found} == {kind == 1}
 
 
+def test_a_limit_of_the_same_value_in_another_unit_is_published(
+    graph: GraphHarness,
+) -> None:
+    """1 % of the speed becomes 1 m/s, during a drive."""
+    graph.add(ZonesNode(context=graph.context))
+    found: list[SpeedLimit] = []
+    graph.node.create_subscription(SpeedLimit, "/speed_limit", found.append, 10)
+    mask = graph.node.create_publisher(OccupancyGrid, "/my_mask", LATCHED)
+    info = graph.node.create_publisher(
+        CostmapFilterInfo, "/speed_costmap_filter_info", LATCHED
+    )
+    grid = OccupancyGrid()
+    grid.header.frame_id = "map"
+    grid.info.resolution, grid.info.width, grid.info.height = 1.0, 1, 1
+    grid.data = np.array([1], np.int8)
+    mask.publish(grid)
+    publisher = graph.node.create_publisher(Odometry, "/odom/filtered", 10)
+    for kind in (1, 2):
+        info.publish(
+            CostmapFilterInfo(type=kind, filter_mask_topic="/my_mask", multiplier=1.0)
+        )
+        graph.run_for(0.1)
+        publisher.publish(odometry(0.5, kind))
+        graph.run_for(0.1)
+    limits = [(each.percentage, each.speed_limit) for each in found]
+    assert limits == [(True, 1.0), (False, 1.0)]
+
+
 @pytest.mark.parametrize("topic", ["", "not a name", "/odom/filtered"])
 def test_a_mask_on_an_unusable_topic_is_dropped(
     topic: str, graph: GraphHarness, capsys: pytest.CaptureFixture[str]

@@ -2,7 +2,9 @@
 
 Random particles rarely hit the right pose of a large map. Here all free cells (at a
 coarse spacing) and headings are scored with a blurred field, and the best ones are
-refined, so that a few particles per candidate suffice.
+refined, so that a few particles per candidate suffice. On a large map, blocks of such
+cells are scored first, with the best value that any cell of a block may have, and only
+the best blocks are searched: time and memory stay within bounds.
 """
 
 import math
@@ -19,7 +21,9 @@ from navette.navigation.localization.amcl.likelihood_field import (
 
 _HEADINGS = 48
 _SPACING_M = 0.25
-_MOST_POSES = 600_000
+_MOST_POSES, _MOST_BLOCKS = 600_000, 2_500_000
+_MOST_CELLS = _MOST_POSES // _HEADINGS
+_BLOCK = 4  # edge of a block of coarse cells; twice as many until they are few enough
 _BEAMS = 24
 _BLUR_M, _RANDOM = 0.35, 0.2
 _REFINED = 250  # coarse poses that are refined, the best ones …
@@ -45,8 +49,9 @@ def search_map(field: LikelihoodField, points: Points) -> Candidates:
     if not len(points) or not len(field.free):
         return Candidates(np.empty((0, 3)), np.empty(0))
     few = _spread(points, _BEAMS)
-    poses = _coarse_poses(field)
-    coarse = field.blurred(_BLUR_M, _RANDOM).scores(poses, few)
+    blurred = field.blurred(_BLUR_M, _RANDOM)
+    poses = _coarse_poses(blurred, few)
+    coarse = blurred.scores(poses, few)
     count = min(_RANKED, len(poses))
     best = np.argpartition(-coarse, count - 1)[:count]
     best = best[np.argsort(-coarse[best], kind="stable")]
@@ -81,22 +86,50 @@ def _spread(points: Points, count: int) -> Points:
     return points[np.linspace(0, len(points) - 1, count).round().astype(np.int64)]
 
 
-def _coarse_poses(field: LikelihoodField) -> Poses:
-    spec = field.spec
-    spacing_m = _SPACING_M
-    while True:
-        step = max(1, round(spacing_m / spec.resolution))
-        offset = step // 2
-        on_grid = ((field.free % step) == offset).all(axis=1)
-        if not on_grid.any():  # narrow places between the grid's lines
-            on_grid = np.ones(len(field.free), np.bool_)
-        cells = field.free[on_grid]
-        if len(cells) * _HEADINGS <= _MOST_POSES:
-            break
-        spacing_m *= 1.3
-    centers = spec.centers_of(cells)
+def _coarse_poses(field: LikelihoodField, points: Points) -> Poses:
+    """Return poses (N, 3) at free cells, the most promising ones of a large map."""
+    step = max(1, round(_SPACING_M / field.spec.resolution))
+    offset = step // 2
+    is_free = np.zeros(field.spec.shape, np.bool_)
+    is_free[field.free[:, 0], field.free[:, 1]] = True
+    on_grid = is_free[offset::step, offset::step]
+    if not on_grid.any():  # narrow places between the grid's lines
+        return _with_headings(field, field.free[:: -(-len(field.free) // _MOST_CELLS)])
+    if on_grid.sum() <= _MOST_CELLS:
+        return _with_headings(field, offset + step * np.argwhere(on_grid))
+    edge = _BLOCK
+    while np.count_nonzero(_blocks(on_grid, edge)) * _HEADINGS > _MOST_BLOCKS:
+        edge *= 2
+    blocks = np.argwhere(_blocks(on_grid, edge))
+    centers = blocks * (edge * step) + offset + (edge - 1) * step // 2
+    poses = _with_headings(field, centers)
+    half_diagonal_m = math.hypot(0.5, 0.5) * edge * step * field.spec.resolution
+    bounds = field.best_within(half_diagonal_m).scores(poses, points)
+    kept = min(len(poses), _MOST_POSES // edge**2)
+    best = np.sort(np.argpartition(-bounds, kept - 1)[:kept])
+    inside = np.argwhere(np.ones((edge, edge), np.bool_))
+    cells = (edge * blocks[best // _HEADINGS, None] + inside).reshape(-1, 2)
+    headings = np.repeat(poses[best, 2], edge**2)
+    rows, columns = np.minimum(cells, np.array(on_grid.shape) - 1).T
+    chosen = on_grid[rows, columns] & (cells < on_grid.shape).all(axis=1)
+    places = field.spec.centers_of(offset + step * cells[chosen])
+    return np.column_stack([places, headings[chosen]])
+
+
+def _blocks(on_grid: NDArray[np.bool_], edge: int) -> NDArray[np.bool_]:
+    """Return whether squares of ``edge`` × ``edge`` cells have a free one."""
+    height, width = (-(-size // edge) for size in on_grid.shape)
+    padded = np.zeros((height * edge, width * edge), np.bool_)
+    padded[: on_grid.shape[0], : on_grid.shape[1]] = on_grid
+    tiles = padded.reshape(height, edge, width, edge)
+    found: NDArray[np.bool_] = np.logical_or.reduce(tiles, axis=(1, 3))
+    return found
+
+
+def _with_headings(field: LikelihoodField, cells: NDArray[np.int64]) -> Poses:
+    """Return the poses (N · headings, 3) at the centres of cells (N, 2)."""
     headings = np.arange(_HEADINGS) * (2 * math.pi / _HEADINGS) - math.pi
-    poses = np.empty((len(centers), _HEADINGS, 3))
-    poses[:, :, :2] = centers[:, None]
+    poses = np.empty((len(cells), _HEADINGS, 3))
+    poses[:, :, :2] = field.spec.centers_of(cells)[:, None]
     poses[:, :, 2] = headings
     return poses.reshape(-1, 3)

@@ -95,7 +95,11 @@ class LikelihoodField:
     @cached_property
     def tolerant(self) -> "LikelihoodField":
         """The field in which ends of beams within a cell of an obstacle are on it."""
-        away = np.maximum(self.distance - np.float32(self.spec.resolution), 0.0)
+        return self.best_within(self.spec.resolution)
+
+    def best_within(self, radius_m: float) -> "LikelihoodField":
+        """Return the field of the largest value within a radius of each place."""
+        away = np.maximum(self.distance - np.float32(radius_m), 0.0)
         return replace(
             self, log_likelihood=_log_likelihood(away, self.sigma, self.random)
         )

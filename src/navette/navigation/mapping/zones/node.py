@@ -68,7 +68,7 @@ class ZonesNode(StageNode):
         self._masks: dict[int, Subscription[Any]] = {}  # by the type of the filter
         self._speeds: FilterMask | None = None
         self._in_percent = True
-        self._limit = _NO_LIMIT
+        self._published = _NO_LIMIT, True
         if params.keepout_file:
             info = CostmapFilterInfo(type=_KEEP_OUT, base=0.0, multiplier=1.0)
             self._serve(
@@ -106,8 +106,8 @@ class ZonesNode(StageNode):
         pose = self._tracker.latest
         assert pose is not None, "the tracker accepted the odometry"
         limit = self._limit_at(self._speeds, pose.x, pose.y)
-        if limit != self._limit:
-            self._limit = limit
+        if (limit, self._in_percent) != self._published:
+            self._published = limit, self._in_percent
             frame = header(self._now_ns(), self.params.map_frame)
             message = SpeedLimit(
                 header=frame, percentage=self._in_percent, speed_limit=limit
