@@ -134,7 +134,8 @@ class SlamMapServices:
     def _deserialize(self, request: Any, response: Any) -> Any:
         """Continue the map FILENAME.slam, or localize in it.
 
-        The response has no field: the log and the status have the outcome.
+        The log and the status have the outcome: the response has no field in ROS 2
+        Jazzy and Kilted. Rolling's definition has result codes, and another hash.
         """
         kinds = (
             request.START_AT_FIRST_NODE,
