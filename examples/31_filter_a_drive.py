@@ -29,10 +29,10 @@ from navette.navigation.stack.replay import Replay
 
 DRIVE = Path(__file__).parent / "data" / "drive.mcap"
 # robot_localization's parameters. Order of the 15: x y z, roll pitch yaw, vx vy vz,
-# vroll vpitch vyaw, ax ay az. Noise per second: the turn rate changes by 0.4 rad/s within
-# 0.15 s, so that a smaller value than 2 lags in turns; the pose has what the biases of
-# wheels and IMU add. With these values the mean NEES of x, y, yaw is 3.0 with all sensors,
-# as expected.
+# vroll vpitch vyaw, ax ay az. Noise per second: the turn rate changes by 0.4 rad/s
+# within 0.15 s, so that a filter with less than 2 lags in turns; the pose has what the
+# biases of wheels and IMU add. With these values the mean NEES of x, y, yaw is 3.0 with
+# all sensors, as expected.
 PARAMETERS = """
 ekf:
   ros__parameters:
