@@ -79,7 +79,7 @@ class LogPanel implements PanelInstance {
     this.#body.addEventListener("scroll", () => this.#onScroll());
     const clear = h("button", { class: "bare", title: "Clear", "aria-label": "Clear", onclick: () => this.#clear() }, icon("close"));
     const save = h("button", { class: "bare", title: "Save as text", "aria-label": "Save as text", onclick: () => this.#save() }, icon("download"));
-    container.append(h("div", { class: "panel log" }, h("div", { class: "bar" }, this.#level, this.#node, this.#text, this.#count, save, clear), this.#body, this.#latest));
+    container.append(h("div", { class: "panel log" }, h("div", { class: "bar one-row" }, this.#level, this.#node, this.#text, this.#count, save, clear), this.#body, this.#latest));
     // Also while hidden: what was logged meanwhile must be there. Lines are few and small.
     this.#ends.push(connection.subscribe<LogMessage>("/rosout", { every: true }, ({ value }) => this.#add(value)));
     this.#ends.push(connection.on("reset", () => context.connection.playback && this.#clear()));
