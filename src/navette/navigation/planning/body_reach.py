@@ -32,10 +32,21 @@ _STOPS_M, _STOPS_RAD = 0.3, 0.3
 
 
 class Reached(NamedTuple):
-    """Finer cells (H, W) that the body reaches, and whether the goal is among them."""
+    """What the body reaches.
+
+    Attributes:
+        cells: finer cells (H, W).
+        has_goal: whether the goal is among them.
+        yaw: the last headings that were tried count from this one (map).
+    """
 
     cells: NDArray[np.bool_]
     has_goal: bool
+    yaw: float = 0.0
+
+    def nearest_yaw(self, yaw: float) -> float:
+        """Return the nearest of the last headings."""
+        return yaw - math.remainder(yaw - self.yaw, HEADING_STEP)
 
 
 class NoPath(NamedTuple):
@@ -121,23 +132,30 @@ class BodyReach:
         """Return what the body certainly reaches with a margin, by any motions.
 
         A long body fits through a narrow passage with few headings: those between the
-        ones of a space are tried by further spaces, from where the body can turn.
+        ones of a space, and the start's, are tried by further spaces, from where the
+        body can turn.
         """
         if margin_m not in self._certain:
             self._certain[margin_m] = self._reach_certainly(margin_m)
         return self._certain[margin_m]
 
     def _reach_certainly(self, margin_m: float) -> Reached:
-        space = self.certain_space(margin_m)
-        reached = self._flood(space, np.array([space.start]))
-        for part in range(1, _HEADING_PARTS):
-            if reached.has_goal:
-                break
-            space = self.certain_space(margin_m, part / _HEADING_PARTS * HEADING_STEP)
+        reached = Reached(self._at_start(), has_goal=False)
+        parts = [part / _HEADING_PARTS * HEADING_STEP for part in range(_HEADING_PARTS)]
+        for yaw in (*parts, self.start.yaw):
+            space = self.certain_space(margin_m, yaw)
             seeds = np.argwhere(reached.cells & space.has_room())
             further = self._flood(space, seeds)
-            reached = Reached(reached.cells | further.cells, further.has_goal)
+            reached = Reached(reached.cells | further.cells, further.has_goal, yaw)
+            if reached.has_goal:
+                break
         return reached
+
+    def _at_start(self) -> NDArray[np.bool_]:
+        """Return (H, W) the start's cell, in which every heading is open."""
+        cells = np.zeros(self.spec.shape, np.bool_)
+        cells[self.spec.cell_of(self.start.x, self.start.y)] = True
+        return cells
 
     def why_impossible(self) -> Outcome | None:
         """Return why no motion of the body reaches the goal; None if one may exist.
@@ -178,7 +196,10 @@ class BodyReach:
         return self._spaces[margin_m]
 
     def certain_space(self, margin_m: float, yaw: float = 0.0) -> BodySpace:
-        """Return the poses that certainly have a margin, or near the start less."""
+        """Return the poses that certainly have a margin, or near the start less.
+
+        Headings count from a yaw (map).
+        """
         space = BodySpace.certain(*self._world(), margin_m, yaw=yaw)
         if self.start_clearance_m < margin_m:
             free = BodySpace.certain(*self._world(), yaw=yaw)

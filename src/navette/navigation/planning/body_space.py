@@ -150,7 +150,7 @@ class BodySpace:
     def driven(
         self, drive: str, radius_m: float, until: Masks = ALL_POSES.masks
     ) -> "DrivenPoses":
-        """Return the poses that a drive reaches; headings count from the start's.
+        """Return the poses that a drive reaches from the start with heading 0.
 
         Moves are straight, forward and in reverse, and to the next heading: in place,
         or along an arc of the radius; an omnidirectional drive also slides. Of the
@@ -158,7 +158,8 @@ class BodySpace:
         hybrid A* (Dolgov et al. 2008). The first pose of ``until`` (H, W) is the last.
         """
         spec, size = self._spec, self._spec.resolution
-        local = spec.origin.inverse() @ self._start
+        first = Pose2(self._start.x, self._start.y, self._yaw)
+        local = spec.origin.inverse() @ first
         reached = np.zeros_like(self._open)
         most = min(_HEADINGS * reached.size, _MOST_POSES)
         position, links = np.empty((most, 2), np.float32), np.empty(most, np.uint32)
@@ -172,7 +173,7 @@ class BodySpace:
             position[:count],
             links[:count],
             spec,
-            self._start.yaw,
+            self._yaw,
             bool(stopped),
             bool(complete),
         )
@@ -182,12 +183,12 @@ class BodySpace:
     ) -> Masks:
         """Return (H, W) the headings in cells (N, 2) within the tolerance of a yaw.
 
-        At least the nearest one; all with None. Headings count from the start's.
+        At least the nearest one; all with None.
         """
         masks = np.zeros_like(self._open)
         headings = np.arange(_HEADINGS)
         if yaw is not None:
-            yaws = self._start.yaw + headings.astype(np.float64) * HEADING_STEP
+            yaws = self._yaw + headings.astype(np.float64) * HEADING_STEP
             off = _wrapped(yaws - yaw)
             within = max(tolerance_rad, HEADING_STEP / 2 + 1e-9)
             headings = headings[np.abs(off) <= within]

@@ -20,7 +20,7 @@ from navette.navigation.planning.route import GridRouter
 
 # Expansions before the search is restricted to where the body can be, which takes as
 # long as thousands of them.
-_FIRST_EXPANSIONS = 1_000
+FIRST_EXPANSIONS = 1_000
 # Part of the budget then: paths are found with little of it, or by all motions.
 _GUIDED_SHARE = 4
 
@@ -61,7 +61,7 @@ class MarginPlanner:
             return self.planned(goal, fitting, margin_m)
         reach_m = path_end_reach_m(self.params)
         target = Target(goal.x, goal.y, goal.yaw, reach_m)
-        first = max_expansions if self.reach is None else _FIRST_EXPANSIONS
+        first = max_expansions if self.reach is None else FIRST_EXPANSIONS
         first = min(first, max_expansions)
         detour = self._detours(grid, start, first).plan(start, target, route)
         if self.reach is not None and detour.poses is None and detour.exhausted:

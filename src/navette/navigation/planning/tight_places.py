@@ -5,6 +5,7 @@ gaps with a part of the budget, search with all of it only where a path may exis
 try all motions on a fine grid.
 """
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -21,7 +22,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.planning.body_reach import SWAY_M, BodyReach
 from navette.navigation.planning.footprint_check import check_path
-from navette.navigation.planning.margin_planner import MarginPlanner
+from navette.navigation.planning.margin_planner import FIRST_EXPANSIONS, MarginPlanner
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
 from navette.navigation.planning.path_shape import (
@@ -80,11 +81,17 @@ class TightPlanner:
         if not self._reach.certain(margin).has_goal:
             budget = max(LEAST_EXPANSIONS, quick // _DOUBTFUL_SHARE)
             return _proven(self._search(gaps, margin, budget, possible.cells))
+        loose, first = body.loose(slack), min(FIRST_EXPANSIONS, quick)
         cells = self._reach.certain(margin).cells
-        found = self._search(gaps, margin, quick, cells)
-        if found.outcome.has_path:
-            return found
-        return self._exhaustive(body.loose(slack), margin, found)
+        for shape, budget, within in (
+            (gaps, first, None),
+            (gaps, quick, cells),
+            (loose, first, self._reach.certain(0.0).cells),
+        ):
+            found = self._search(shape, margin, budget, within)
+            if found.outcome.has_path:
+                return found
+        return self._exhaustive(loose, margin, found)
 
     def _exhaustive(self, body: BodyShape, margin_m: float, found: Plan) -> Plan:
         """Return a path near one by all motions on a fine grid, or that there is none.
@@ -96,8 +103,11 @@ class TightPlanner:
         cell the robot is.
         """
         complete = True
-        for more_m in (math.sqrt(0.5) * self._reach.spec.resolution, 0.0):
-            driven, poses = self._driven(margin_m + more_m)
+        within_cell_m = math.sqrt(0.5) * self._reach.spec.resolution
+        for more_m, yaw in itertools.product(
+            (within_cell_m, 0.0), self._yaws(margin_m)
+        ):
+            driven, poses = self._driven(margin_m + more_m, yaw)
             complete &= driven
             if poses is None:
                 continue
@@ -113,19 +123,31 @@ class TightPlanner:
         cells = self._reach.certain(0.0).cells & self._reach.possible(margin_m).cells
         return self._search(body, margin_m, self.params.max_expansions, cells)
 
-    def _driven(self, margin_m: float) -> tuple[bool, Poses | None]:
+    def _yaws(self, margin_m: float) -> list[float]:
+        """Return the first headings of all motions.
+
+        A body that turns in place may also turn to one of those of its passage first.
+        """
+        here = self.start.yaw
+        there = self._reach.certain(margin_m).nearest_yaw(here)
+        return [here, there] if self.params.turns_in_place else [here]
+
+    def _driven(self, margin_m: float, yaw: float) -> tuple[bool, Poses | None]:
         """Return whether all motions were tried, and poses (N, 3) to the goal."""
-        space = self._reach.certain_space(margin_m, self.start.yaw)
+        space = self._reach.certain_space(margin_m, yaw)
         if not self.params.allow_unknown:
             space.close(self._reach.finer.occupancy == UNKNOWN)
         cells = self._reach.ends()
         if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
             return True, None
-        yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
+        tolerance = self.params.goal_yaw_tolerance_rad
         drive, radius_m = self.params.drive, self.params.min_turning_radius_m
-        until = space.at_yaw(cells, yaw, tolerance)
+        until = space.at_yaw(cells, self.goal.yaw, tolerance)
         driven = space.driven(drive, radius_m, until)
-        return driven.complete, driven.last_path() if driven.stopped else None
+        if not driven.stopped:
+            return driven.complete, None
+        turn = np.array([[self.start.x, self.start.y, self.start.yaw]])
+        return True, np.concatenate([turn, driven.last_path()])
 
     def _along(self, poses: Poses) -> NDArray[np.bool_]:
         """Return the finer cells (H, W) within the body's radius of poses."""
@@ -174,7 +196,7 @@ class TightPlanner:
         body: BodyShape,
         margin_m: float,
         max_expansions: int,
-        within: NDArray[np.bool_],
+        within: NDArray[np.bool_] | None,
     ) -> Plan:
         planner = replace(
             self._planner(self._prepared(body, within)),

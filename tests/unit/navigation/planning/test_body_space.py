@@ -115,7 +115,7 @@ def test_only_an_omnidirectional_drive_slides_into_a_bay(
 ) -> None:
     lethal, spec = bay()
     start = Pose2(1.0, 0.5, 0.0)
-    space = BodySpace.certain(lethal, spec, BODY, start, 0.03)
+    space = BodySpace.certain(lethal, spec, BODY, start, 0.03, yaw=start.yaw)
     poses = space.driven(drive, 0.8 if drive == "ackermann" else 0.0)
     path = poses.path_to(np.array([spec.cell_of(3.6, 1.1)]))
     assert (path is not None) == enters
