@@ -41,6 +41,8 @@ from navette.navigation.planning.route import GridRouter
 _QUICK_SHARE = 4
 # Where the body passes within the resolution or not at all, the search gets this part.
 _DOUBTFUL_SHARE = 16
+# The search along a path by all motions, which is the plan otherwise, gets this part.
+_ALONG_SHARE = 16
 # The clearance in a passage is not planned below what the controller keeps, which would
 # refuse a path with less.
 _LEAST_M = 0.025
@@ -96,8 +98,8 @@ class TightPlanner:
     def _exhaustive(self, body: BodyShape, margin_m: float, found: Plan) -> Plan:
         """Return a path near one by all motions on a fine grid, or that there is none.
 
-        The long search runs only along such a path: a gap that the body cannot pass
-        would attract it. Where it fails, the path itself is the plan. It is rough, of
+        The search runs only along such a path: a gap that the body cannot pass would
+        attract it. Where it fails, the path itself is the plan. It is rough, of
         shorter motions than the search has, and off the cells' centres: it needs only
         the least margin in the end. The first attempt keeps the margin wherever in a
         cell the robot is.
@@ -111,8 +113,8 @@ class TightPlanner:
             complete &= driven
             if poses is None:
                 continue
-            along = self._along(poses)
-            found = self._search(body, margin_m, self.params.max_expansions, along)
+            budget = max(LEAST_EXPANSIONS, self.params.max_expansions // _ALONG_SHARE)
+            found = self._search(body, margin_m, budget, self._along(poses))
             if found.outcome.has_path:
                 return found
             rough = self._rough_plan(poses, min(margin_m, _LEAST_M))
