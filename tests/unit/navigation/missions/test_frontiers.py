@@ -1,6 +1,7 @@
 """Frontiers of small maps drawn as text."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -99,8 +100,18 @@ def test_longer_frontiers_are_worth_a_longer_way() -> None:
 def test_frontiers_that_failed_are_avoided() -> None:
     cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
     (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
-    found = explore(cells, spec, (1.25, 1.25), PARAMS, [frontier.middle])
+    found = explore(cells, spec, (1.25, 1.25), PARAMS, failed=[frontier])
     assert (found.frontiers, found.unreachable) == ((), 1)
+
+
+def test_a_visited_frontier_is_seen_from_another_place_only() -> None:
+    cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
+    (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
+    found = explore(cells, spec, (1.25, 1.25), PARAMS, visited=[frontier])
+    assert (found.frontiers, found.unreachable) == ((), 1)
+    elsewhere = replace(frontier, goal=(frontier.goal[0] - 1.0, frontier.goal[1]))
+    again = explore(cells, spec, (1.25, 1.25), PARAMS, visited=[elsewhere])
+    assert again.frontiers == (frontier,)
 
 
 def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:

@@ -90,7 +90,9 @@ def explore(
     spec: GridSpec,
     robot: tuple[float, float],
     params: FrontierParams,
-    avoid: Sequence[tuple[float, float]] = (),
+    *,
+    failed: Sequence[Frontier] = (),
+    visited: Sequence[Frontier] = (),
 ) -> Exploration:
     """Return the frontiers of a map, the best first, and the explored area.
 
@@ -98,7 +100,9 @@ def explore(
         cells: (H, W) occupancy, -1 unknown, 0 free to 100 occupied.
         spec: geometry of the grid.
         robot: position of the robot, m, map.
-        avoid: middles (m, map) of frontiers that are left out.
+        failed: frontiers that were not reached; those near to them are left out.
+        visited: frontiers that were still there when their goal was reached. Those near
+            to them are left out unless they are to be seen from another place.
     """
     free, occupied, away = _layers(cells, spec.resolution, params)
     open_edge = _open_edge(cells, free, away)
@@ -116,7 +120,9 @@ def explore(
         open_cells += len(cluster)
         for piece in _pieces(cluster, longest):
             frontier = _viewpoint(piece, free, occupied, steps, spec, params)
-            if frontier is not None and _is_near(frontier.middle, avoid, params):
+            if frontier is not None and _is_hopeless(
+                frontier, failed, visited, params.viewpoint_m / 4
+            ):
                 frontier = None
             if frontier is None:
                 unreachable += 1
@@ -173,12 +179,18 @@ def _open_edge(cells: Cells, free: Mask, away: NDArray[np.float32]) -> Mask:
     return free & _beside(cells == UNKNOWN) & (away > _WALL_M)
 
 
-def _is_near(
-    point: tuple[float, float],
-    avoid: Sequence[tuple[float, float]],
-    params: FrontierParams,
+def _is_hopeless(
+    frontier: Frontier,
+    failed: Sequence[Frontier],
+    visited: Sequence[Frontier],
+    near_m: float,
 ) -> bool:
-    return any(math.dist(point, each) <= params.viewpoint_m / 4 for each in avoid)
+    """Whether another drive to the frontier promises nothing."""
+    return any(math.dist(frontier.middle, e.middle) <= near_m for e in failed) or any(
+        math.dist(frontier.middle, e.middle) <= near_m
+        and math.dist(frontier.goal, e.goal) <= near_m
+        for e in visited
+    )
 
 
 def _beside(mask: Mask) -> Mask:

@@ -114,10 +114,9 @@ class ExplorerNode(StageNode):
         self._position: tuple[float, float] | None = None
         self._target: Frontier | None = None
         self._sent = 0
-        # Middles of frontiers that are not driven to: their goals failed, or were
-        # reached and showed nothing new.
-        self._failed: list[tuple[float, float]] = []
-        self._visited: list[tuple[float, float]] = []
+        # Frontiers whose goals failed, or were reached and showed nothing new.
+        self._failed: list[Frontier] = []
+        self._visited: list[Frontier] = []
         self._failures = 0
         self._has_retried = False
         self.create_timer(_PERIOD_S, self._check)
@@ -190,8 +189,14 @@ class ExplorerNode(StageNode):
             cells, spec = grid_from_message(self._map)
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
-        avoid = [*self._failed, *self._visited]
-        found = explore(cells, spec, self._position, self.params.frontier, avoid)
+        found = explore(
+            cells,
+            spec,
+            self._position,
+            self.params.frontier,
+            failed=self._failed,
+            visited=self._visited,
+        )
         self._note(found)
         if found.frontiers:
             self._maps_without_frontier = 0
@@ -262,11 +267,11 @@ class ExplorerNode(StageNode):
             self.end(CANCELED)
             return
         if status == GoalStatus.STATUS_SUCCEEDED:
-            # A frontier that is still there when its goal was reached cannot be seen.
-            self._visited.append(frontier.middle)
+            # If the frontier is still there, it cannot be seen from that place.
+            self._visited.append(frontier)
             self._failures = 0
         else:
-            self._failed.append(frontier.middle)
+            self._failed.append(frontier)
             self._failures += 1
             self._update(failed=self.report.failed + 1)
             if self._failures >= self.params.max_failures:
