@@ -21,9 +21,6 @@ FORWARD, SIDE, TURN_RATE, CURVATURE = 0, 1, 2, 3
 """Rows of velocities (4, n): forward and to the left (m/s), turn rate (rad/s), and the
 curvature (1/m) to which an Ackermann drive steers."""
 
-# Turn rate (rad/s) or curvature (1/m) below which nothing limits the speed.
-_LEAST = 1e-9
-
 
 class DriveLimits(NamedTuple):
     """Limits of a drive in float32; m, s, rad.
@@ -58,10 +55,11 @@ def advance_differential(
           limits.acceleration * step_s, limits.deceleration * step_s)  # fmt: skip
     _approach(turns, turn_rate, limits.max_turn_rate,
               limits.turn_acceleration * step_s)  # fmt: skip
-    most, least = limits.lateral_acceleration, np.float32(_LEAST)
+    most = limits.lateral_acceleration
     for i in range(forward.size):
-        fastest = most / max(abs(turn_rate[i]), least)
-        forward[i] = min(fastest, max(-fastest, forward[i]))
+        rate = abs(turn_rate[i])
+        if abs(forward[i]) * rate > most:
+            forward[i] = math.copysign(most / rate, forward[i])
         speeds[i] = forward[i]
 
 
@@ -80,10 +78,11 @@ def advance_ackermann(
           limits.acceleration * step_s, limits.deceleration * step_s)  # fmt: skip
     _approach(bends, curvature, limits.max_curvature,
               limits.curvature_rate * step_s)  # fmt: skip
-    most, least = limits.lateral_acceleration, np.float32(_LEAST)
+    most = limits.lateral_acceleration
     for i in range(forward.size):
-        fastest = math.sqrt(most / max(abs(curvature[i]), least))
-        forward[i] = min(fastest, max(-fastest, forward[i]))
+        bend = abs(curvature[i])
+        if forward[i] * forward[i] * bend > most:
+            forward[i] = math.copysign(math.sqrt(most / bend), forward[i])
         speeds[i] = forward[i]
         turn_rate[i] = forward[i] * curvature[i]
 

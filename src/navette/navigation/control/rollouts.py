@@ -217,7 +217,6 @@ def _chunk_costs(
         speed[row] = start[1 + row]
     steering = CURVATURE if drive == ACKERMANN else TURN_RATE
     before, apart = np.empty(n, np.float32), np.empty(n, np.float32)
-    turned = np.empty(n, np.float32)
     at, from_ = np.zeros(n, np.int32), np.empty(n, np.int32)
     near = np.empty((5, n), np.float32)
     index = np.empty(n, np.int32)
@@ -235,16 +234,15 @@ def _chunk_costs(
             advance_omni(limits, step_s, speeds, turns, rates, speed)
         _effort_costs(before, speed[steering], weights.effort, costs)
         move(pose, speed, step_s)
-        _nearest(path, pose, from_, at, apart, turned)
+        _nearest(path, pose, from_, at, apart)
         found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
         if found > 0:
             _clearances(field, body, weights.clearance_m, near, found, is_tight)
             earlier: Any = np.float32((1.0 - 0.5 * t / steps) / steps)
             _clearance_costs(near[4], found, index, on_path, at, weights, step_s,
                              earlier, costs)  # fmt: skip
-        delay: Any = np.float32(DELAY_SHARE / steps) * weights.progress
-        _path_costs(speed[FORWARD], path, at, apart, turned, weights, step_s, delay,
-                    costs)  # fmt: skip
+        _path_costs(pose, speed[FORWARD], path, at, apart, weights, step_s, costs)
+        _delay_costs(path, at, weights.progress, steps, costs)
     _remaining_costs(pose, path, at, weights.progress, costs)
 
 
@@ -305,24 +303,19 @@ def _near_obstacles(
     height, width = field.distance_m.shape
     needed = F(enough_m + body.reach_m + 0.5 * field.resolution)
     x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
-    us, vs, away = near[0], near[1], near[4]
-    stride, flat = np.int32(width), field.distance_m.reshape(-1)
-    right, top = F(width - 1), F(height - 1)
-    # Two loops: the first one is vectorised.
-    for i in range(x.size):
-        u, v = x[i] * per_metre - left, y[i] * per_metre - bottom
-        us[i], vs[i] = u, v
-        column = np.int32(min(right, max(F(0.0), u)))
-        row = np.int32(min(top, max(F(0.0), v)))
-        away[i] = flat[np.uint32(row * stride + column)]
     found = 0
     for i in range(x.size):
-        is_near = away[i] < needed
-        near[0, found], near[1, found] = us[i], vs[i]
-        near[2, found] = cos[i] * per_metre
-        near[3, found] = sin[i] * per_metre
-        index[found] = i
-        found += is_near
+        u, v = x[i] * per_metre - left, y[i] * per_metre - bottom
+        if (
+            F(0.0) <= u < F(width)
+            and F(0.0) <= v < F(height)
+            and field.distance_m[np.uint32(v), np.uint32(u)] < needed
+        ):
+            near[0, found], near[1, found] = u, v
+            near[2, found] = cos[i] * per_metre
+            near[3, found] = sin[i] * per_metre
+            index[found] = i
+            found += 1
     return found
 
 
@@ -437,17 +430,11 @@ def _clearance_costs(
 
 @kernel(nogil=True, fastmath=True)
 def _nearest(
-    path: PathTable,
-    pose: Array32,
-    from_: Indices,
-    at: Indices,
-    apart: Array32,
-    turned: Array32,
+    path: PathTable, pose: Array32, from_: Indices, at: Indices, apart: Array32
 ) -> None:
     """Advance every sample to the nearest of the poses that it can have reached.
 
-    ``turned`` gets 1 − cos θ of the angle θ to that pose, and ``apart`` the squared
-    distance, in which 2 (1 − cos θ) stands for θ².
+    ``apart`` gets the squared distance, in which 2 (1 − cos θ) stands for θ².
     """
     F = np.float32
     x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
@@ -463,47 +450,52 @@ def _nearest(
             j = np.int32(from_[i] + ahead)
             to = np.uint32(j)
             dx, dy = x[i] - px[to], y[i] - py[to]
-            there_turned = F(1.0) - cos[i] * pc[to] - sin[i] * ps[to]
-            there = dx * dx + dy * dy + per_turn * there_turned
+            turned = F(1.0) - cos[i] * pc[to] - sin[i] * ps[to]
+            there = dx * dx + dy * dy + per_turn * turned
             nearer = there < apart[i]
             apart[i] = there if nearer else apart[i]
-            turned[i] = there_turned if nearer else turned[i]
             at[i] = min(j, last) if nearer else at[i]
 
 
 @kernel(nogil=True, fastmath=True)
 def _path_costs(
+    pose: Array32,
     forward: Array32,
     path: PathTable,
     at: Indices,
     apart: Array32,
-    turned: Array32,
     weights: CostWeights,
     step_s: float,
-    delay: float,
     costs: Array32,
 ) -> None:
-    """Add the costs of the distance from the path, of driving against it, and of delay.
-
-    ``delay`` is the weight of the path that is left after this step: to arrive later
-    costs more. With the path left at the end of the rollout alone, a path shorter than
-    the horizon can be driven at its end as well as now, and at every step again later.
-    """
+    """Add the costs of the distance from the path and of driving against it."""
     F = np.float32
-    measure, direction = path.poses[4], path.poses[5]
-    left, ahead = np.empty_like(costs), np.empty_like(costs)
-    # By themselves: indexed loads prevent that the next loop is vectorised.
+    cos, sin = pose[_COS], pose[_SIN]
+    pc, ps, direction = path.poses[2], path.poses[3], path.poses[5]
+    per_turn = F(METRES_PER_RADIAN**2)
     for i in range(at.size):
         near = np.uint32(at[i])
-        left[i], ahead[i] = measure[near], direction[near]
-    per_turn, end = F(METRES_PER_RADIAN**2), measure[-1]
+        turned = F(2.0) * (F(1.0) - cos[i] * pc[near] - sin[i] * ps[near])
+        away = apart[i] - per_turn * turned
+        against = max(F(0.0), -forward[i] * direction[near])
+        cost = weights.align * away + weights.heading * turned
+        costs[i] += (cost + weights.reverse * against) * step_s
+
+
+@kernel(nogil=True, fastmath=True)
+def _delay_costs(
+    path: PathTable, at: Indices, weight: float, steps: int, costs: Array32
+) -> None:
+    """Add the mean cost of the path that is left: to arrive later costs more.
+
+    With the path left at the end of the rollout alone, a path shorter than the
+    horizon can be driven at its end as well as now, and at every step again later.
+    """
+    measure = path.poses[4]
+    end = measure[-1]
+    share = np.float32(DELAY_SHARE / steps) * weight
     for i in range(at.size):
-        squared = F(2.0) * turned[i]
-        away = apart[i] - per_turn * squared
-        against = max(F(0.0), -forward[i] * ahead[i])
-        cost = weights.align * away + weights.heading * squared
-        cost = (cost + weights.reverse * against) * step_s
-        costs[i] += cost + delay * (end - left[i])
+        costs[i] += share * (end - measure[np.uint32(at[i])])
 
 
 @kernel(nogil=True, fastmath=True)
