@@ -53,10 +53,7 @@ def exhaustive(lethal: np.ndarray, margin_m: float | None) -> np.ndarray:
 
 
 def reached(lethal: np.ndarray, margin_m: float | None) -> np.ndarray:
-    if margin_m is None:
-        space = BodySpace.possible(lethal, SPEC, BODY, START)
-    else:
-        space = BodySpace.certain(lethal, SPEC, BODY, START, margin_m, yaw=START.yaw)
+    space = BodySpace(lethal, SPEC, BODY, START, margin_m=margin_m)
     return space.reached_from(np.array([space.start]))
 
 
@@ -79,12 +76,3 @@ def test_what_is_reached_with_a_margin_can_be_reached(
     assert not (certain & ~exhaustive(lethal, None)).any()
     wider = reached(lethal, margin_m + 0.05)
     assert not (wider & ~certain).any()
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", range(3))
-def test_what_is_excluded_with_a_margin_cannot_be_reached_with_it(seed: int) -> None:
-    lethal, margin_m = random_map(seed), 0.1
-    space = BodySpace.possible(lethal, SPEC, BODY, START, margin_m)
-    possible = space.reached_from(np.array([space.start]))
-    assert not (exhaustive(lethal, margin_m + _BETWEEN_M) & ~possible).any()

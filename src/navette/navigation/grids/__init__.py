@@ -62,14 +62,7 @@ from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.regions import SquareRegion
 from navette.navigation.grids.sparse import RowSpans, SparseGrid, sparse_zeros
-from navette.navigation.grids.spec import (
-    FREE,
-    LETHAL,
-    UNKNOWN,
-    GridFrame,
-    GridSpec,
-    grid_frame,
-)
+from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     cell_points,
     mark_points,
@@ -103,7 +96,6 @@ __all__ = [
     "discs_from_message",
     "inside_discs",
     "without_discs",
-    "GridFrame",
     "GridSpec",
     "grid_frame",
     "UNKNOWN",

@@ -19,29 +19,10 @@ _MOST_CELLS = 6_000_000
 
 
 class CloseMap(NamedTuple):
-    """A part of a map in finer cells.
-
-    Attributes:
-        occupancy: (H, W) in finer cells.
-        spec: their geometry in the map frame.
-        part: rows and columns of the map.
-    """
+    """Occupancy (H, W) in finer cells, and their geometry in the map frame."""
 
     occupancy: NDArray[np.int8]
     spec: GridSpec
-    part: tuple[slice, slice]
-
-    def on_map(
-        self, cells: NDArray[np.bool_], shape: tuple[int, int]
-    ) -> NDArray[np.bool_]:
-        """Return (shape) the map's cells with any of these (H, W), and those beyond."""
-        rows, columns = self.part
-        height, width = rows.stop - rows.start, columns.stop - columns.start
-        factor = self.spec.height // height
-        blocks = cells.reshape(height, factor, width, factor)
-        found = np.ones(shape, np.bool_)
-        found[self.part] = blocks.any(axis=(1, 3))
-        return found
 
 
 def close_map(
@@ -87,7 +68,7 @@ def close_map(
     closer = np.repeat(np.repeat(cells, factor, axis=0), factor, axis=1)
     marked = mark_points(np.zeros(fine.shape, np.uint64), fine, hits)
     closer[tuple(marked.T)] = LETHAL
-    return CloseMap(closer, fine, (rows, columns))
+    return CloseMap(closer, fine)
 
 
 def _part(

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids import exact_clearances, make_outline
 from navette.navigation.planning import lattice, path_shape
-from navette.navigation.planning.body_space import ALL_POSES, OpenPoses
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_within
@@ -60,8 +59,7 @@ class DetourResult:
 class DetourPlanner:
     """Detour planner on one grid for one body.
 
-    ``unseen`` (H, W) is 1 in cells that the body does not enter in reverse. ``poses``
-    are all that may have the grid's margin.
+    ``unseen`` (H, W) is 1 in cells that the body does not enter in reverse.
     """
 
     def __init__(
@@ -71,11 +69,9 @@ class DetourPlanner:
         params: PlannerParams,
         router: GridRouter,
         unseen: NDArray[np.uint8],
-        *,
-        poses: OpenPoses = ALL_POSES,
     ) -> None:
         self.grid, self.body, self.params, self.router = grid, body, params, router
-        self._unseen, self._poses = unseen, poses
+        self._unseen = unseen
         step = min(0.3, max(0.2 * body.circumscribed_m, 2 * grid.spec.resolution))
         # The sharpest bends turn by two heading steps.
         step = max(step, 2 * params.min_turning_radius_m * math.tau / Motions.headings)
@@ -217,7 +213,6 @@ class DetourPlanner:
             obstacles=grid.exact_obstacles,
             outline=make_outline(self.body.footprint),
             unseen=self._unseen,
-            poses=self._poses,
         )
         goal = lattice.LatticeGoal(
             target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL

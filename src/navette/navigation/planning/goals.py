@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from navette.navigation.grids import GridSpec
 from navette.navigation.planning.dijkstra import UNREACHED, cost_to_go
 from navette.navigation.planning.outcome import Outcome
-from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.traversal import LETHAL, Cell
 
@@ -61,17 +60,6 @@ def cells_near(
     away = np.hypot(gaps[:, 0], gaps[:, 1])
     near = (away <= radius_m) | ((cells == (row, column)).all(axis=1))
     return cells[near], away[near]
-
-
-def path_end_reach_m(params: PlannerParams) -> float:
-    """Return the largest distance from the goal at which a path may end.
-
-    Less than the tolerance, because the robot may stop before the path's end.
-    """
-    return max(
-        params.goal_tolerance_m - params.path_end_tolerance_m,
-        0.5 * params.goal_tolerance_m,
-    )
 
 
 def _is_enclosed(

@@ -26,7 +26,6 @@ from navette.navigation.grids import (
     make_body,
     make_obstacles,
 )
-from navette.navigation.planning.body_space import ALL_POSES, OpenPoses
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
 from navette.navigation.planning.lattice_kernels import (
@@ -60,7 +59,6 @@ class LatticeWorld:
         obstacles: the lethal cells, for exact clearances in tight places.
         outline: outline of the body.
         unseen: (H, W) uint8, 1 = cells that the body does not enter in reverse.
-        poses: all that may have the margin.
     """
 
     distance_m: NDArray[np.float32]
@@ -74,7 +72,6 @@ class LatticeWorld:
     obstacles: ObstacleGrid
     outline: Outline
     unseen: NDArray[np.uint8]
-    poses: OpenPoses = ALL_POSES
 
 
 @dataclass(frozen=True)
@@ -157,7 +154,6 @@ def _scene(world: LatticeWorld) -> LatticeScene:
         ),
         float(world.margin_m),
         float(world.comfort_m),
-        world.poses,
     )
 
 

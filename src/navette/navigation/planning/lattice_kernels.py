@@ -19,7 +19,6 @@ from navette.navigation.grids import (
     pose_clearance,
     pose_is_clear,
 )
-from navette.navigation.planning.body_space import OpenPoses, is_closed
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
@@ -62,7 +61,6 @@ class LatticeScene(NamedTuple):
     unseen_distance: DistanceGrid
     margin_m: float
     comfort_m: float
-    poses: OpenPoses
 
 
 class MoveTable(NamedTuple):
@@ -240,8 +238,6 @@ def _fits(
         dx, dy = moves.offsets[m, k, 0], moves.offsets[m, k, 1]
         px, py = x + cos * dx - sin * dy, y + sin * dx + cos * dy
         pyaw = yaw + moves.offsets[m, k, 2]
-        if needed_m >= scene.margin_m and is_closed(scene.poses, px, py, pyaw):
-            return False
         if pose_is_clear(scene.grid, scene.body, px, py, pyaw, needed_m):
             continue
         if _exact(scene, px, py, pyaw, needed_m) < needed_m:

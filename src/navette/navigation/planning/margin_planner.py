@@ -4,25 +4,17 @@ import math
 from dataclasses import dataclass, replace
 
 from navette.geometry import OMNI, Pose2
-from navette.navigation.planning.body_reach import BodyReach
-from navette.navigation.planning.body_space import ALL_POSES, OpenPoses
 from navette.navigation.planning.detour import DetourPlanner, DetourResult, Target
 from navette.navigation.planning.fitted_route import RouteFitter
-from navette.navigation.planning.goals import nearest_reachable, path_end_reach_m
+from navette.navigation.planning.goals import nearest_reachable
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal
-from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
+from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.plan import Plan, cost_of
 from navette.navigation.planning.planning_grid import PlanningGrid
 from navette.navigation.planning.prepared_map import PreparedMap
 from navette.navigation.planning.route import GridRouter
-
-# Expansions before the search is restricted to where the body can be, which takes as
-# long as thousands of them.
-FIRST_EXPANSIONS = 1_000
-# Part of the budget then: paths are found with little of it, or by all motions.
-_GUIDED_SHARE = 4
 
 
 @dataclass(frozen=True)
@@ -34,16 +26,12 @@ class MarginPlanner:
         map: the map.
         router: search for routes of a point.
         put_down_at: pose where the robot was put down; None: the start of each plan.
-        reach: where the body can be, for long searches; None: they are not restricted.
-        poses: that may have the margin.
     """
 
     params: PlannerParams
     map: PreparedMap
     router: GridRouter
     put_down_at: Pose2 | None
-    reach: BodyReach | None = None
-    poses: OpenPoses = ALL_POSES
 
     def plan(
         self, margin_m: float, start: Pose2, goal: Goal, *, max_expansions: int
@@ -61,38 +49,11 @@ class MarginPlanner:
             return self.planned(goal, fitting, margin_m)
         reach_m = path_end_reach_m(self.params)
         target = Target(goal.x, goal.y, goal.yaw, reach_m)
-        first = max_expansions if self.reach is None else FIRST_EXPANSIONS
-        first = min(first, max_expansions)
-        detour = self._detours(grid, start, first).plan(start, target, route)
-        if self.reach is not None and detour.poses is None and detour.exhausted:
-            if self.reach.possible(margin_m).has_goal:
-                return self._plan_within(self.reach, margin_m, max_expansions)
-            detour = replace(detour, exhausted=False)
+        detour = self._detours(grid, start, max_expansions).plan(start, target, route)
         poses = fitting if detour.poses is None else detour.poses
         if poses is None:
             return Plan(_why_none(detour), expansions=detour.expansions)
         return self.planned(goal, poses, margin_m, detour.expansions)
-
-    def _plan_within(
-        self, reach: BodyReach, margin_m: float, max_expansions: int
-    ) -> Plan:
-        """Plan where the body can be; a gap that it cannot pass attracts the search.
-
-        Where the body may pass or not, only less than the usual margin is tried.
-        """
-        is_usual = margin_m >= self.params.clearance_margin_m
-        within = reach.certain(margin_m)
-        if not within.has_goal and is_usual:
-            return Plan(Outcome.SEARCH_LIMIT)
-        within = within if within.has_goal else reach.possible(margin_m)
-        budget = max(LEAST_EXPANSIONS, max_expansions // _GUIDED_SHARE)
-        planner = replace(
-            self,
-            map=self.map.restricted(reach.on_map(within.cells)),
-            reach=None,
-            poses=reach.possible_space(margin_m).poses,
-        )
-        return planner.plan(margin_m, reach.start, reach.goal, max_expansions=budget)
 
     def plan_on_grid(
         self, margin_m: float, start: Pose2, goal: Goal, below_m: float
@@ -140,9 +101,7 @@ class MarginPlanner:
     ) -> DetourPlanner:
         params = replace(self.params, max_expansions=max_expansions)
         unseen = self.map.unseen(self.put_down_at or start)
-        return DetourPlanner(
-            grid, self.map.body, params, self.router, unseen, poses=self.poses
-        )
+        return DetourPlanner(grid, self.map.body, params, self.router, unseen)
 
 
 def _why_none(detour: DetourResult) -> Outcome:
@@ -151,3 +110,14 @@ def _why_none(detour: DetourResult) -> Outcome:
         return Outcome.SEARCH_LIMIT
     # Nothing but the start was expanded: no motion from there is free.
     return Outcome.START_BLOCKED if detour.expansions == 1 else Outcome.NO_PATH
+
+
+def path_end_reach_m(params: PlannerParams) -> float:
+    """Return the largest distance from the goal at which a path may end.
+
+    Less than the tolerance, because the robot may stop before the path's end.
+    """
+    return max(
+        params.goal_tolerance_m - params.path_end_tolerance_m,
+        0.5 * params.goal_tolerance_m,
+    )

@@ -8,7 +8,6 @@ import numpy as np
 
 from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec
-from navette.navigation.planning.body_reach import BodyReach, NoPath
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path
@@ -44,9 +43,7 @@ _AT_GOAL_M = 0.03
 
 
 class Planner:
-    """Planner on the newest map.
-
-    Between plans it remembers only that no path exists.
+    """Planner on the newest map; stateless between plans.
 
     Attributes:
         map: the newest map.
@@ -59,7 +56,6 @@ class Planner:
         self.map = PreparedMap(params)
         self.put_down_at: Pose2 | None = None
         self._own = _own_plan(params)
-        self._no_path: NoPath | None = None  # of the last plan
 
     def copy(self) -> "Planner":
         """Return a planner with the same map that changes independently."""
@@ -103,7 +99,7 @@ class Planner:
         )
         nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
         nothing, body = np.zeros(spec.shape, np.bool_), self.map.footprint
-        space = BodySpace.possible(nothing, spec, body, start)
+        space = BodySpace(nothing, spec, body, start)
         space.reached_from(np.array([space.start]))
 
     def plan(self, start: Pose2, goal: Goal, *, exact_start: bool = False) -> Plan:
@@ -117,9 +113,7 @@ class Planner:
             other = self.copy()
             other.params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
             other.router = self.router.with_params(other.params)
-            plan = other.plan(start, goal)
-            self._no_path = other._no_path
-            return plan
+            return other.plan(start, goal)
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)
@@ -200,14 +194,7 @@ class Planner:
     def _plan_or_squeeze(self, start: Pose2, goal: Goal) -> Plan:
         """Plan with the usual margin, else the tight one, else on finer cells."""
         params = self.params
-        reach = BodyReach(params, self.map, start, goal)
-        if self._no_path is not None and self._no_path.still_holds(reach):
-            return Plan(self._no_path.outcome)
-        self._no_path = None
-        planner, quick = (
-            replace(self._with_margin, reach=reach),
-            quick_expansions(params),
-        )
+        planner, quick = self._with_margin, quick_expansions(params)
         usual, tight = params.clearance_margin_m, tight_margin_m(params)
         plan = planner.plan(usual, start, goal, max_expansions=quick)
         direct = math.dist((start.x, start.y), (goal.x, goal.y))
@@ -219,10 +206,7 @@ class Planner:
             plan = squeezed if squeezed.outcome.has_path and worth else plan
         if plan.outcome.has_path:
             return plan
-        plan = TightPlanner(reach, self.put_down_at).plan(plan)
-        if plan.outcome in (Outcome.NO_PATH, Outcome.GOAL_BLOCKED):
-            self._no_path = reach.no_path(plan.outcome)
-        return plan
+        return TightPlanner(params, self.map, self.put_down_at, start, goal).plan(plan)
 
     @property
     def _with_margin(self) -> MarginPlanner:

@@ -71,12 +71,6 @@ class PreparedMap:
         other._moved = self._moved.copy()
         return other
 
-    def restricted(self, within: NDArray[np.bool_]) -> "PreparedMap":
-        """Return the same map with cells (H, W) outside of which the base cannot be."""
-        other = self.copy()
-        other._within = within
-        return other
-
     def detach(self) -> None:
         """Take arrays of its own: copies keep what they have."""
         if self._map is not None:

@@ -5,7 +5,6 @@ gaps with a part of the budget, search with all of it only where a path may exis
 try all motions on a fine grid.
 """
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -15,15 +14,17 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2
 from navette.navigation.grids import (
     UNKNOWN,
-    distance_field,
     exact_clearances,
     make_obstacles,
     make_outline,
 )
-from navette.navigation.planning.body_reach import SWAY_M, BodyReach
+from navette.navigation.planning.body_space import BodySpace
+from navette.navigation.planning.close_look import close_map
 from navette.navigation.planning.footprint_check import check_path
-from navette.navigation.planning.margin_planner import FIRST_EXPANSIONS, MarginPlanner
+from navette.navigation.planning.goals import cells_near
+from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
 from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.own_methods import Goal
 from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
 from navette.navigation.planning.path_shape import (
     Poses,
@@ -39,13 +40,9 @@ from navette.navigation.planning.route import GridRouter
 
 # Searches on the map's own cells, and through gaps, get this part of the budget.
 _QUICK_SHARE = 4
-# Where the body passes within the resolution or not at all, the search gets this part.
-_DOUBTFUL_SHARE = 16
-# The search along a path by all motions, which is the plan otherwise, gets this part.
-_ALONG_SHARE = 16
-# The clearance in a passage is not planned below what the controller keeps, which would
-# refuse a path with less.
-_LEAST_M = 0.025
+# In a passage the clearance varies by this, and is not planned below the least, which
+# is what the controller keeps: it would refuse a path with less.
+_SWAY_M, _LEAST_M = 0.01, 0.025
 
 
 def quick_expansions(params: PlannerParams) -> int:
@@ -61,103 +58,89 @@ def tight_margin_m(params: PlannerParams) -> float:
 class TightPlanner:
     """Planner for one start and one goal in finer cells of a map."""
 
-    def __init__(self, reach: BodyReach, put_down_at: Pose2 | None) -> None:
-        self.params, self.start, self.goal = reach.params, reach.start, reach.goal
-        self._reach, self._map = reach, reach.prepared
-        self._put_down_at = put_down_at
+    def __init__(
+        self,
+        params: PlannerParams,
+        prepared: PreparedMap,
+        put_down_at: Pose2 | None,
+        start: Pose2,
+        goal: Goal,
+    ) -> None:
+        self.params, self.start, self.goal = params, start, goal
+        self._map, self._put_down_at = prepared, put_down_at
+        ends = np.array([(start.x, start.y), (goal.x, goal.y)])
+        self._closer = close_map(
+            prepared.cells,
+            prepared.spec,
+            prepared.hits,
+            params.lethal_cost,
+            ends,
+            2 * prepared.body.circumscribed_m,
+        )
 
     def plan(self, plan: Plan) -> Plan:
         """Plan on finer cells.
 
         Returns ``plan``, with the reason why no path exists if that is proven.
         """
-        slack = self._reach.spec.resolution
-        margin = self._margin()
-        possible = self._reach.possible(margin)
-        if not possible.has_goal:
+        why = self.why_impossible()
+        if why is not None:
             known = plan.outcome in (Outcome.START_BLOCKED, Outcome.GOAL_BLOCKED)
-            why = self._reach.why_impossible() or Outcome.NO_PATH
             return plan if known else replace(plan, outcome=why)
+        slack = self._closer.spec.resolution
+        margin = self._margin()
         body = BodyShape.of(self._map.footprint, slack)
-        gaps, quick = body.through_gaps(slack), quick_expansions(self.params)
-        if not self._reach.certain(margin).has_goal:
-            budget = max(LEAST_EXPANSIONS, quick // _DOUBTFUL_SHARE)
-            return _proven(self._search(gaps, margin, budget, possible.cells))
-        loose, first = body.loose(slack), min(FIRST_EXPANSIONS, quick)
-        cells = self._reach.certain(margin).cells
-        for shape, budget, within in (
-            (gaps, first, None),
-            (gaps, quick, cells),
-            (loose, first, self._reach.certain(0.0).cells),
-        ):
-            found = self._search(shape, margin, budget, within)
-            if found.outcome.has_path:
-                return found
-        return self._exhaustive(loose, margin, found)
+        quick = quick_expansions(self.params)
+        found = self._search(body.through_gaps(slack), margin, quick)
+        if found.outcome.has_path:
+            return found
+        # The long search runs only if a path of exact poses at cell centres may exist,
+        # and only there: a gap that the body cannot pass would attract it.
+        reached, why = self._reached(0.0)
+        if why is None:
+            budget = self.params.max_expansions
+            found = self._search(body.loose(slack), margin, budget, reached)
+        if found.outcome is not Outcome.SEARCH_LIMIT:
+            return found
+        return self._exhaustive(found, margin)
 
-    def _exhaustive(self, body: BodyShape, margin_m: float, found: Plan) -> Plan:
-        """Return a path near one by all motions on a fine grid, or that there is none.
+    def why_impossible(self) -> Outcome | None:
+        """Return why no motion of the body reaches the goal; None if one may exist.
 
-        The search runs only along such a path: a gap that the body cannot pass would
-        attract it. Where it fails, the path itself is the plan. It is rough, of
-        shorter motions than the search has, and off the cells' centres: it needs only
-        the least margin in the end. The first attempt keeps the margin wherever in a
-        cell the robot is.
+        A goal lies inside an obstacle if obstacles enclose all space around it that the
+        body could move in, and no beam has measured any of it.
         """
-        complete = True
-        within_cell_m = math.sqrt(0.5) * self._reach.spec.resolution
-        for more_m, yaw in itertools.product(
-            (within_cell_m, 0.0), self._yaws(margin_m)
-        ):
-            driven, poses = self._driven(margin_m + more_m, yaw)
-            complete &= driven
-            if poses is None:
+        return self._reached(None)[1]
+
+    def _exhaustive(self, found: Plan, margin_m: float) -> Plan:
+        """Return a path by all motions on a fine grid, or that there is none.
+
+        These paths are rough, of shorter motions than the search has, and off the
+        cells' centres: they need only the least margin in the end. The first attempt
+        keeps the margin wherever in a cell the robot is. ``found`` remains where the
+        motions are too many.
+        """
+        within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
+        cells = self._ends()
+        for more_m in (within_cell_m, 0.0):
+            space = self._space(margin_m + more_m)
+            # Where the robot stands it may have less, and keeps that.
+            space.open_near_start(self._space(0.0), self._map.body.circumscribed_m)
+            if not self.params.allow_unknown:
+                space.close(self._closer.occupancy == UNKNOWN)
+            if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
                 continue
-            budget = max(LEAST_EXPANSIONS, self.params.max_expansions // _ALONG_SHARE)
-            found = self._search(body, margin_m, budget, self._along(poses))
-            if found.outcome.has_path:
+            drive, radius_m = self.params.drive, self.params.min_turning_radius_m
+            driven = space.driven(drive, radius_m)
+            if driven is None:
                 return found
-            rough = self._rough_plan(poses, min(margin_m, _LEAST_M))
+            yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
+            poses = driven.path_to(cells, yaw, tolerance)
+            least = min(margin_m, _LEAST_M)
+            rough = None if poses is None else self._rough_plan(poses, least)
             if rough is not None:
                 return replace(rough, expansions=found.expansions)
-        if complete:
-            return _proven(found)
-        cells = self._reach.certain(0.0).cells & self._reach.possible(margin_m).cells
-        return self._search(body, margin_m, self.params.max_expansions, cells)
-
-    def _yaws(self, margin_m: float) -> list[float]:
-        """Return the first headings of all motions.
-
-        A body that turns in place may also turn to one of those of its passage first.
-        """
-        here = self.start.yaw
-        there = self._reach.certain(margin_m).nearest_yaw(here)
-        return [here, there] if self.params.turns_in_place else [here]
-
-    def _driven(self, margin_m: float, yaw: float) -> tuple[bool, Poses | None]:
-        """Return whether all motions were tried, and poses (N, 3) to the goal."""
-        space = self._reach.certain_space(margin_m, yaw)
-        if not self.params.allow_unknown:
-            space.close(self._reach.finer.occupancy == UNKNOWN)
-        cells = self._reach.ends()
-        if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
-            return True, None
-        tolerance = self.params.goal_yaw_tolerance_rad
-        drive, radius_m = self.params.drive, self.params.min_turning_radius_m
-        until = space.at_yaw(cells, self.goal.yaw, tolerance)
-        driven = space.driven(drive, radius_m, until)
-        if not driven.stopped:
-            return driven.complete, None
-        turn = np.array([[self.start.x, self.start.y, self.start.yaw]])
-        return True, np.concatenate([turn, driven.last_path()])
-
-    def _along(self, poses: Poses) -> NDArray[np.bool_]:
-        """Return the finer cells (H, W) within the body's radius of poses."""
-        spec, reach_m = self._reach.spec, self._map.body.circumscribed_m
-        marked = np.zeros(spec.shape, np.uint8)
-        rows_columns = [spec.cell_of(x, y) for x, y, _ in poses.tolist()]
-        marked[tuple(np.array(rows_columns).T)] = 1
-        return np.asarray(distance_field(marked, spec.resolution, reach_m) < reach_m)
+        return replace(found, outcome=Outcome.NO_PATH)
 
     def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:
         """Return the plan of poses from all motions, if the body fits along them."""
@@ -184,26 +167,47 @@ class TightPlanner:
         )
         return bool((depth >= -0.5 * prepared.spec.resolution).all())
 
-    def _margin(self) -> float:
-        """Return the tight margin, or less in a passage where the robot has less.
+    def _ends(self) -> NDArray[np.int64]:
+        """Return the cells (N, 2) at which a path may end."""
+        goal_xy, reach_m = (self.goal.x, self.goal.y), path_end_reach_m(self.params)
+        return cells_near(self._closer.spec, goal_xy, reach_m)[0]
 
-        In whole millimetres: spaces of equal margins have parts in common.
-        """
+    def _space(self, margin_m: float | None) -> BodySpace:
+        occupancy, spec = self._closer.occupancy, self._closer.spec
+        lethal, body = occupancy >= self.params.lethal_cost, self._map.footprint
+        return BodySpace(lethal, spec, body, self.start, margin_m=margin_m)
+
+    def _reached(
+        self, margin_m: float | None
+    ) -> tuple[NDArray[np.bool_], Outcome | None]:
+        """Return (H, W) where the body can be; see :meth:`why_impossible`."""
+        occupancy, space = self._closer.occupancy, self._space(margin_m)
+        cells = self._ends()
+        reached = space.reached_from(np.array([space.start]))
+        if reached[tuple(cells.T)].any():
+            return reached, None
+        around = space.reached_from(cells)
+        is_seen = (occupancy[around] != UNKNOWN).any()
+        rim = around[[0, -1]].any() or around[:, [0, -1]].any()
+        return reached, Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
+
+    def _margin(self) -> float:
+        """Return the tight margin, or less in a passage where the robot has less."""
+        pose = np.array([[self.start.x, self.start.y, self.start.yaw]])
+        outline = make_outline(self._map.footprint)
+        obstacles = self._map.grid().exact_obstacles
         tight = tight_margin_m(self.params)
-        here = math.floor((self._reach.start_clearance_m - SWAY_M) * 1000) / 1000
-        return min(tight, max(here, _LEAST_M))
+        here = float(exact_clearances(obstacles, outline, pose, tight + _SWAY_M)[0])
+        return min(tight, max(here - _SWAY_M, _LEAST_M))
 
     def _search(
         self,
         body: BodyShape,
         margin_m: float,
         max_expansions: int,
-        within: NDArray[np.bool_] | None,
+        within: NDArray[np.bool_] | None = None,
     ) -> Plan:
-        planner = replace(
-            self._planner(self._prepared(body, within)),
-            poses=self._reach.possible_space(margin_m).poses,
-        )
+        planner = self._planner(self._prepared(body, within))
         return planner.plan(
             margin_m, self.start, self.goal, max_expansions=max_expansions
         )
@@ -212,17 +216,9 @@ class TightPlanner:
         self, body: BodyShape | None, within: NDArray[np.bool_] | None
     ) -> PreparedMap:
         prepared = PreparedMap(self.params, body, within=within)
-        finer = self._reach.finer
-        prepared.receive(NewMap(finer.occupancy, finer.spec, self._map.hits))
+        prepared.receive(NewMap(*self._closer, self._map.hits))
         return prepared
 
     def _planner(self, prepared: PreparedMap) -> MarginPlanner:
         router = GridRouter(self.params, centres=True)
         return MarginPlanner(self.params, prepared, router, self._put_down_at)
-
-
-def _proven(plan: Plan) -> Plan:
-    """Return a plan after which no other search could find a path."""
-    if plan.outcome is Outcome.SEARCH_LIMIT:
-        return replace(plan, outcome=Outcome.NO_PATH)
-    return plan
