@@ -25,8 +25,8 @@ RESULTS = HERE / "results.json"
 PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
-    "dispatch", "network", "messages", "recording", "stack", "startup", "verbs",
-    "fifty", "gym", "robots", "worlds", "gap",
+    "dispatch", "network", "calls", "messages", "recording", "stack", "startup",
+    "verbs", "fifty", "gym", "robots", "worlds", "gap",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",

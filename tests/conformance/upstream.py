@@ -4,11 +4,11 @@
 
 Each FOLDER is a checkout (branch jazzy) of ros2/launch, ros2/launch_ros,
 ros2/message_filters, ros2/rosidl_runtime_py, ros2/rcl_interfaces (which has values of
-messages for the former) or ros2/demos (whose nodes launch_ros starts); the suites
-import osrf-pycommon from PyPI. Prints a line for each suite: tests that pass, tests
-that fail for a reason listed in ``upstream_failures.toml``, and others. Exits with 1
-where a test fails without a listed reason, or passes although it is listed. None of the
-suites is part of this repository.
+messages for the former) or ros2/demos (whose nodes launch_ros starts). Needs
+``pip install '.[test]' setuptools osrf-pycommon``. Prints a line for each suite: tests
+that pass, tests that fail for a reason listed in ``upstream_failures.toml``, and
+others. Exits with 1 where a test fails without a listed reason, or passes although it
+is listed. None of the suites is part of this repository.
 """
 
 # ruff: noqa: T201 - it prints a report
@@ -76,6 +76,9 @@ def install(folders: list[Path], prefix: Path) -> None:
     The suites use programs and examples in the share and lib folders of packages.
     """
     for script in (path for each in folders for path in each.glob("**/setup.py")):
+        manifest = script.with_name("package.xml")
+        if "ament_python" not in manifest.read_text(encoding="utf-8"):
+            continue  # built by CMake: its setup.py is for catkin
         done = subprocess.run(
             [sys.executable, "-c", _DATA_FILES],
             cwd=script.parent,
@@ -139,7 +142,7 @@ def run_suite(
             f"--ignore-glob={folder}/*.launch.py",  # data; --doctest-modules takes them
             str(folder),  # behind the options: --launch-args takes the words after it
         ]
-        subprocess.run(
+        done = subprocess.run(
             command,
             cwd=scratch,
             env=os.environ
@@ -160,11 +163,14 @@ def run_suite(
                 "NAVETTE_RUNTIME_DIR": scratch,
             },
             stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
             timeout=SUITE_TIMEOUT_S,
             check=False,
         )
+        if not report.exists():  # pytest refused its arguments
+            sys.exit(f"{name}: {done.stdout[-2000:]}")
         return _read_report(report)
 
 
