@@ -108,7 +108,8 @@ def driven(robot: str, localization: str, seed: int) -> NDArray[np.float64]:
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("robot", "localization"),
-    [(robot, "odometry+imu") for robot in SPEEDS] + [("jackal", "odometry+imu+gnss")],
+    [(robot, "odometry+imu") for robot in SPEEDS]
+    + [("jackal", "odometry+gnss"), ("jackal", "odometry+imu+gnss")],
 )
 def test_errors_are_as_large_as_the_filter_states(
     robot: str, localization: str

@@ -19,6 +19,11 @@ _PROCESS_NOISE = (
     *(0.2, 0.01, 0.0, 0.0, 0.0, 0.05),
     *(1.0, 1.0, 0.0),
 )
+# The same of the heading without a gyroscope: robots with a GNSS receiver turn by
+# skidding, up to 25 % more or less than their wheels.
+_SKID_NOISE_RAD2 = 2e-3
+# Mahalanobis distance that one fix of a consistent filter in a thousand exceeds.
+_GNSS_GATE = 3.72
 _ORIGIN = GeoOrigin()
 _ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
 
@@ -48,7 +53,7 @@ def localization_parameters(
             "odom0": topics.WHEEL_ODOMETRY.name,
             "odom0_config": [name in ("vx", "vy", "vyaw") for name in _ORDER],
             **_fused(sim, origin),
-            "process_noise_covariance": list(_PROCESS_NOISE),
+            "process_noise_covariance": _process_noise(sim),
             "dynamic_process_noise_covariance": True,
             "initial_state": [x, y, 0.0, 0.0, 0.0, yaw, *[0.0] * 9],
             "initial_pose_is_known": True,
@@ -75,6 +80,13 @@ def localization_parameters(
     return values
 
 
+def _process_noise(sim: SimParams) -> list[float]:
+    noise = list(_PROCESS_NOISE)
+    if "imu" not in sim.fused_sensors:
+        noise[_ORDER.index("yaw")] = _SKID_NOISE_RAD2
+    return noise
+
+
 def _fused(sim: SimParams, origin: GeoOrigin) -> dict[str, Any]:
     """Return the filter's parameters of the sensors beside the wheels."""
     values: dict[str, Any] = {}
@@ -89,5 +101,6 @@ def _fused(sim: SimParams, origin: GeoOrigin) -> dict[str, Any]:
                 "(<heading_deg> of its <spherical_coordinates>)"
             )
         values["gps0"] = topics.FIX.name
+        values["gps0_rejection_threshold"] = _GNSS_GATE
         values["gps0_datum_deg"] = [origin.latitude_deg, origin.longitude_deg]
     return values

@@ -1,16 +1,34 @@
 """Whether the filter is lost: by what its sensors measure and by its uncertainty.
 
-A sensor contradicts the estimate if its normalised innovation squared lies above what a
-consistent filter exceeds once in a thousand measurements (Bar-Shalom, Li, Kirubarajan,
-"Estimation with Applications to Tracking and Navigation" (2001), section 5.4). One such
-measurement is an outlier; a filter is lost when a sensor measures nothing else.
+A sensor contradicts the estimate in two cases (Bar-Shalom, Li, Kirubarajan, "Estimation
+with Applications to Tracking and Navigation" (2001), section 5.4):
+
+- all its measurements for some time have a normalised innovation squared that a
+  consistent filter exceeds once in a thousand measurements. One such measurement is an
+  outlier;
+- the median of its positions during that time is farther from the estimate than the
+  variances explain. Single positions of a GNSS receiver with metres of noise do not
+  show that the robot was carried by a few metres, their median does.
 """
 
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from enum import StrEnum
+
+import numpy as np
+
+from navette.navigation.localization.ekf.filter import Innovation
+from navette.navigation.localization.ekf.measurement import Measurement
+from navette.navigation.localization.ekf.state import Array
 
 # 99.9 % of a chi-square variable of 1 … 8 degrees of freedom.
 _BOUNDS = (10.83, 13.82, 16.27, 18.47, 20.52, 22.46, 24.32, 26.12)
 _LEAST_COUNT = 3  # measurements in a row that contradict
+# Of two degrees of freedom, exceeded once in a million: windows follow at the rate of
+# the sensor, for hours.
+_MEDIAN_BOUND = 27.6
+_MEDIAN_VARIANCE = np.pi / 2  # of n normal variables, times n / variance of one
 
 
 class FilterState(StrEnum):
@@ -20,11 +38,82 @@ class FilterState(StrEnum):
     LOST = "lost"
 
 
+@dataclass(frozen=True, eq=False)
+class _Offset:
+    """Measured minus estimated position."""
+
+    stamp_ns: int
+    difference: Array  # (2,)
+    of_estimate: Array  # (2, 2) covariance
+    of_sensor: Array  # (2, 2) covariance
+
+
+@dataclass(eq=False)
+class _Sensor:
+    """What one sensor measured lately."""
+
+    since_ns: int | None = None  # of the first measurement in a row that contradicts
+    count: int = 0
+    offsets: deque[_Offset] = field(default_factory=deque)
+    contradicts: bool = False
+    of_estimate: Array | None = None  # (2, 2) when the contradiction began
+
+    def note(self, measurement: Measurement, innovation: Innovation) -> None:
+        if innovation.squared_distance > _BOUNDS[len(measurement.indices) - 1]:
+            if self.since_ns is None:
+                self.since_ns = measurement.stamp_ns
+            self.count += 1
+        else:
+            self.since_ns, self.count = None, 0
+        if measurement.is_position:
+            noise = measurement.covariance[:2, :2]
+            self.offsets.append(
+                _Offset(
+                    measurement.stamp_ns,
+                    innovation.difference[:2],
+                    innovation.covariance[:2, :2] - noise,
+                    noise,
+                )
+            )
+
+    def update(self, stamp_ns: int, window_ns: int) -> None:
+        """Decide whether the sensor contradicts the estimate."""
+        while self.offsets and self.offsets[0].stamp_ns <= stamp_ns - window_ns:
+            self.offsets.popleft()
+        lasting = self.since_ns is not None and stamp_ns - self.since_ns >= window_ns
+        all_contradict = lasting and self.count >= _LEAST_COUNT
+        contradicts = all_contradict or self._median_contradicts()
+        if contradicts and not self.contradicts and self.offsets:
+            self.of_estimate = self._of_estimate()
+        self.contradicts = contradicts
+
+    def _of_estimate(self) -> Array:
+        mean: Array = np.mean([each.of_estimate for each in self.offsets], axis=0)
+        return mean
+
+    def _median_contradicts(self) -> bool:
+        """Return whether the median of the offsets is too large.
+
+        The variance of the estimate is that of the beginning: a robot that is driven
+        while it is lost becomes less certain, but its pose not less wrong.
+        """
+        count = len(self.offsets)
+        if count < _LEAST_COUNT:
+            return self.contradicts and self.of_estimate is not None
+        median = np.median([each.difference for each in self.offsets], axis=0)
+        noise = np.mean([each.of_sensor for each in self.offsets], axis=0)
+        known = self.of_estimate if self.contradicts else None
+        prior = self._of_estimate() if known is None else known
+        covariance = prior + _MEDIAN_VARIANCE * noise / count
+        squared = float(median @ np.linalg.solve(covariance, median))
+        return squared > (_BOUNDS[1] if self.contradicts else _MEDIAN_BOUND)
+
+
 class ConsistencyMonitor:
     """State of the filter, and the reason if it is lost.
 
     Args:
-        lost_time_ns: how long all measurements of a sensor contradict the estimate of a
+        lost_time_ns: how long the measurements of a sensor contradict the estimate of a
             filter that is lost; 0: contradictions do not count.
         lost_stddev_m: standard deviation of the position of a filter that is lost.
     """
@@ -36,31 +125,21 @@ class ConsistencyMonitor:
     def reset(self) -> None:
         """Forget all measurements."""
         self.cause = ""
-        self._since_ns: dict[str, int] = {}
-        self._count: dict[str, int] = {}
+        self._sensors: dict[str, _Sensor] = {}
 
     @property
     def state(self) -> FilterState:
         """Whether the filter is lost."""
         return FilterState.LOST if self.cause else FilterState.LOCALIZED
 
-    def note(
-        self, source: str, squared_distance: float, entries: int, stamp_ns: int
-    ) -> None:
-        """Note a measurement.
+    def contradicts(self, source: str) -> bool:
+        """Return whether a sensor contradicted the estimate at the last update."""
+        return source in self._contradicting()
 
-        Args:
-            source: name of the sensor.
-            squared_distance: normalised innovation squared.
-            entries: number of measured entries of the state.
-            stamp_ns: time of the measurement.
-        """
-        if squared_distance <= _BOUNDS[entries - 1]:
-            self._since_ns.pop(source, None)
-            self._count.pop(source, None)
-            return
-        self._since_ns.setdefault(source, stamp_ns)
-        self._count[source] = self._count.get(source, 0) + 1
+    def note(self, measurement: Measurement, innovation: Innovation) -> None:
+        """Note a measurement and its difference from the estimate."""
+        sensor = self._sensors.setdefault(measurement.source, _Sensor())
+        sensor.note(measurement, innovation)
 
     def update(self, stddev_m: float, stamp_ns: int) -> FilterState:
         """Return the state at a time.
@@ -70,10 +149,16 @@ class ConsistencyMonitor:
             stamp_ns: time of the estimate.
         """
         self.cause = ""
-        for source, since_ns in self._since_ns.items():
-            lasting = stamp_ns - since_ns >= self._lost_time_ns > 0
-            if lasting and self._count[source] >= _LEAST_COUNT:
-                self.cause = f"{source} contradicts the estimate"
+        if self._lost_time_ns > 0:
+            for sensor in self._sensors.values():
+                sensor.update(stamp_ns, self._lost_time_ns)
+        for source in self._contradicting():
+            self.cause = f"{source} contradicts the estimate"
         if stddev_m > self._lost_stddev_m:
             self.cause = "the position is too uncertain"
         return self.state
+
+    def _contradicting(self) -> Iterator[str]:
+        for source, sensor in self._sensors.items():
+            if sensor.contradicts:
+                yield source

@@ -54,6 +54,20 @@ class Estimate(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
+class Innovation:
+    """Difference of a measurement from the estimate before it."""
+
+    state: Array
+    """(8,) estimate at the measurement's stamp"""
+    difference: Array
+    """(n,) measured minus expected"""
+    covariance: Array
+    """(n, n) of the difference: of the estimate and of the measurement"""
+    squared_distance: float
+    """normalised, squared; 0 for the first measurement of an entry"""
+
+
+@dataclass(frozen=True, eq=False)
 class FilterSnapshot:
     """Complete state of the filter; its arrays are never modified."""
 
@@ -84,8 +98,7 @@ class PlanarEkf:
             velocity (robot_localization's ``dynamic_process_noise_covariance``).
 
     Attributes:
-        squared_distance: normalised innovation squared of the last measurement; 0 for
-            the first one of an entry.
+        innovation: of the last measurement; None before the first one.
     """
 
     def __init__(
@@ -106,7 +119,7 @@ class PlanarEkf:
 
     def reset(self) -> None:
         """Return to the initial state."""
-        self.squared_distance = 0.0
+        self.innovation: Innovation | None = None
         self.snapshot = FilterSnapshot(
             None,
             self.initial_state,
@@ -174,7 +187,7 @@ class PlanarEkf:
         if not np.all(np.isfinite(weighted)):
             return Fused.UNSOUND
         distance = 0.0 if first_seen else float(difference @ weighted[:, 0])
-        self.squared_distance = distance
+        self.innovation = Innovation(state, difference, S, distance)
         if distance > measurement.threshold**2:
             return Fused.REJECTED
         K = weighted[:, 1:].T

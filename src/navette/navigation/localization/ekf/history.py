@@ -3,7 +3,12 @@
 from dataclasses import dataclass
 
 from navette.geometry import Pose2
-from navette.navigation.localization.ekf.filter import FilterSnapshot, Fused, PlanarEkf
+from navette.navigation.localization.ekf.filter import (
+    FilterSnapshot,
+    Fused,
+    Innovation,
+    PlanarEkf,
+)
 from navette.navigation.localization.ekf.measurement import Measurement
 from navette.navigation.localization.ekf.state import Array
 
@@ -31,7 +36,7 @@ class OrderedEkf:
         max_gap_ns: a longer gap in the stamps means a new run.
 
     Attributes:
-        squared_distance: normalised innovation squared of the last given measurement.
+        innovation: of the last given measurement; None before the first one.
     """
 
     def __init__(self, ekf: PlanarEkf, history_ns: int, max_gap_ns: int) -> None:
@@ -41,7 +46,7 @@ class OrderedEkf:
         self._entries: list[_Entry] = []
         self._newest_of: dict[str, int] = {}
         self._set_ns: int | None = None  # stamp of the estimate when it was set
-        self.squared_distance = 0.0
+        self.innovation: Innovation | None = None
 
     def reset(self) -> None:
         """Reset the filter and the history."""
@@ -75,7 +80,7 @@ class OrderedEkf:
         self._newest_of[source] = max(stamp_ns, self._newest_of.get(source, stamp_ns))
         later = self._roll_back_to(stamp_ns)
         result = self._apply(measurement)
-        self.squared_distance = self.ekf.squared_distance
+        self.innovation = self.ekf.innovation
         for entry in later:
             self._apply(entry.measurement)
         self._drop_old()

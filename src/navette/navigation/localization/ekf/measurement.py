@@ -29,6 +29,11 @@ class Measurement:
     lever: tuple[float, float] = (0.0, 0.0)
     """(x, y), m, in the base frame"""
 
+    @property
+    def is_position(self) -> bool:
+        """Whether it measures x and y."""
+        return self.indices[:2] == (X, Y)
+
 
 def expected(measurement: Measurement, state: Array) -> Array:
     """Return the noise-free measurement (n,) in this state."""

@@ -3,7 +3,9 @@
 Before the first measurement the node publishes nothing. Without measurements it
 predicts for ``sensor_timeout_s``, then stops publishing until a measurement arrives, so
 that the controller stops. The status is ``localized`` or ``lost``; navigation stops a
-robot that is lost. Stamps are those of the measurements and never decrease.
+robot that is lost. Positions that contradict the estimate are not used; the filter
+continues when they agree again, or from them when they show position and heading.
+Stamps are those of the measurements and never decrease.
 After a jump in the measurements' time (a bag that loops) the filter resets.
 """
 
@@ -37,6 +39,7 @@ from navette.navigation.localization.ekf.params import (
     SOURCES,
     EkfParams,
 )
+from navette.navigation.localization.ekf.realignment import Realignment
 from navette.navigation.localization.ekf.sensors import (
     KINDS,
     FilterInput,
@@ -182,7 +185,7 @@ class EkfNode(StageNode):
         given = np.asarray(msg.pose.covariance).reshape(6, 6)[PLANAR_POSE]
         usable = is_covariance(given) and given.diagonal().all()
         self._filter.set_pose(pose, given if usable else _INITIAL_COVARIANCE)
-        self._consistency.reset()
+        self._forget_contradictions()
         self.get_logger().info(
             f"initial pose: ({pose.x:.2f}, {pose.y:.2f}), heading {pose.yaw:.2f} rad"
         )
@@ -252,6 +255,7 @@ class EkfNode(StageNode):
         )
         limit_m = params.lost_stddev_m if params.measures_position else math.inf
         self._consistency = ConsistencyMonitor(round(params.lost_time_s * 1e9), limit_m)
+        self._realignment = Realignment()
         self._sensors: dict[str, FilterInput] = {
             source: KINDS[source](source, params, self) for source in params.used
         }
@@ -259,7 +263,7 @@ class EkfNode(StageNode):
 
     def _reset(self) -> None:
         self._filter.reset()
-        self._consistency.reset()
+        self._forget_contradictions()
         for sensor in self._sensors.values():
             sensor.reset()
         self._is_fresh = False
@@ -278,7 +282,7 @@ class EkfNode(StageNode):
             # The sensors check their results.
             with np.errstate(all="ignore"):
                 for measurement in self._sensors[source].measurements(msg, stamp_ns):
-                    self._fused(measurement, self._filter.step(measurement))
+                    self._use(measurement)
         except InvalidInputError as error:
             raise InvalidInputError(
                 error.reason, f"{source} not used: {error.detail}"
@@ -288,18 +292,53 @@ class EkfNode(StageNode):
                 "unknown_frame", f"{source} not used: {error}"
             ) from None
 
-    def _fused(self, measurement: Measurement, fused: Fused) -> None:
-        source, stamp_ns = measurement.source, measurement.stamp_ns
+    def _use(self, measurement: Measurement) -> None:
+        doubted = measurement.is_position and self._consistency.contradicts(
+            measurement.source
+        )
+        if doubted:
+            measurement = replace(measurement, threshold=0.0)
+        fused = self._filter.step(measurement)
+        self._note(measurement, fused)
+        if doubted and fused is Fused.REJECTED:
+            self._realign(measurement)
+            return
+        if measurement.is_position:
+            self._realignment.clear()
         if fused is not Fused.USED:
-            at = f"{source} at {stamp_ns / 1e9:.3f} s"
-            self._warn(source, f"{at} not used: {fused.value}")
+            at = f"{measurement.source} at {measurement.stamp_ns / 1e9:.3f} s"
+            self._warn(measurement.source, f"{at} not used: {fused.value}")
+
+    def _note(self, measurement: Measurement, fused: Fused) -> None:
         if fused in (Fused.USED, Fused.REJECTED):
-            distance = self._filter.squared_distance
-            entries = len(measurement.indices)
-            self._consistency.note(source, distance, entries, stamp_ns)
+            if self._filter.innovation is not None:
+                self._consistency.note(measurement, self._filter.innovation)
             self._is_fresh = True
             self._arrived_ns = self._now_ns()
             self._is_paused = False
+
+    def _realign(self, measurement: Measurement) -> None:
+        """Continue from positions of a sensor that shows where the robot is."""
+        innovation, now = self._filter.innovation, self._filter.ekf.snapshot
+        if innovation is None:
+            return
+        self._realignment.add(innovation.state, measurement)
+        is_measured = self.params.measures_heading
+        variance = float(now.covariance[YAW, YAW]) if is_measured else math.inf
+        found = self._realignment.solve(now.state, variance)
+        if found is None:
+            return
+        pose, covariance = found
+        self._filter.set_pose(pose, covariance)
+        self._forget_contradictions()
+        self.get_logger().info(
+            f"pose found by {measurement.source}: ({pose.x:.2f}, {pose.y:.2f}), "
+            f"heading {pose.yaw:.2f} rad"
+        )
+
+    def _forget_contradictions(self) -> None:
+        self._consistency.reset()
+        self._realignment.clear()
 
     def _judge(self, estimate: Estimate) -> None:
         """Report whether the filter is lost."""
@@ -310,7 +349,7 @@ class EkfNode(StageNode):
         if cause and self._status.state != state and self.params.publish_status:
             self.get_logger().warning(
                 f"lost: {cause}; navigation stops. Publish the pose on "
-                f"{topics.INITIAL_POSE.name} to help"
+                f"{topics.INITIAL_POSE.name}, or drive by hand until fixes show it"
             )
         self._report(state, cause, stddev_m=stddev_m)
 

@@ -79,8 +79,9 @@ class EkfParams(Params):
     )
     lost_time_s: float = param(
         3.0,
-        "the filter is lost when all measurements of a sensor contradict the estimate, "
-        "beyond 99.9 % of what the variances explain, for this time; 0: never",
+        "the filter is lost when the measurements of a sensor contradict the estimate "
+        "for this time: all of them, beyond 99.9 % of what the variances explain, or "
+        "the median of its positions; 0: never",
         at_least=0.0,
         at_most=1000.0,
     )
@@ -204,6 +205,11 @@ class EkfParams(Params):
         """Whether a sensor measures the position itself, not only motion."""
         of_pose = self.config_of("pose0")[:2] if self.pose0 else ()
         return bool(self.gps0) or (any(of_pose) and not self.pose0_differential)
+
+    @property
+    def measures_heading(self) -> bool:
+        """Whether an IMU measures the heading itself, such as by a compass."""
+        return bool(self.imu0) and self.imu0_config[SPATIAL.index("yaw")]
 
     @property
     def datum(self) -> GeoPoint | None:
