@@ -6,7 +6,6 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
-from functools import cache
 from typing import Any
 from weakref import WeakSet
 
@@ -84,6 +83,7 @@ class Context(HasHandle):
         #: The executor of module-level ``spin``; created on demand.
         self.executor: Any = None
         self._initialized = False
+        self._exempts = False  # objects from garbage collection
         self._shut_down = False
         self._shut_down_by_program = False
         self._domain_id = 0
@@ -145,7 +145,6 @@ class Context(HasHandle):
                 self._start_logging(arguments, console_level)
             if joined is not None and self._own_run is None:
                 _log.info("joined run %s (%s)", joined.name, joined.command)
-            _exempt_from_collection()
             self._initialized = True
 
     def init_if_needed(self) -> None:
@@ -201,6 +200,8 @@ class Context(HasHandle):
             self.graph.close()
         if self._own_run is not None:
             self._own_run.close()
+        if self._exempts:
+            gc.unfreeze()
         self._stop_logging()
 
     def try_shutdown(self) -> None:
@@ -210,6 +211,17 @@ class Context(HasHandle):
 
     def destroy(self) -> None:
         self.try_shutdown()
+
+    def exempt_from_collection(self) -> None:
+        """Exempt the objects that exist from garbage collection until the shutdown.
+
+        Called before the first event. Modules and nodes are needed as long as the
+        context. Traversing them would take the collector 10 to 20 ms each time, in the
+        middle of a callback.
+        """
+        if not self._exempts:
+            self._exempts = True
+            gc.freeze()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Call ``callback`` when the context is shut down."""
@@ -281,16 +293,6 @@ class Context(HasHandle):
         if self._file_sink is not None:
             self.log.sinks.remove(self._file_sink)
             self._file_sink.close()
-
-
-@cache
-def _exempt_from_collection() -> None:
-    """Exempt the objects loaded so far from garbage collection; once per process.
-
-    Modules live until the process ends. Traversing their objects takes the collector
-    10 to 20 ms each time, in the middle of a callback.
-    """
-    gc.freeze()
 
 
 def new_graph() -> Graph:

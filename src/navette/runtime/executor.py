@@ -246,6 +246,7 @@ class Executor:
         done: Callable[[], bool] | None = None,
         limit: int | None = None,
     ) -> None:
+        self._context.exempt_from_collection()
         if self._depth == 0:  # a nested spin must not clear the outer spin's stop
             self._stopping = False
         elif self.loop.in_driver_thread:

@@ -1,6 +1,7 @@
 """The event loop: order, nesting, threads, coroutines, errors."""
 
 import asyncio
+import gc
 import threading
 from collections.abc import Iterator
 
@@ -466,3 +467,20 @@ def test_calls_of_other_threads_run_in_order(loop: EventLoop) -> None:
     loop.call_soon_threadsafe(ask)
     loop.run(until_ns=0)
     assert done == [1, 2, 3, 4, 5]
+
+
+def test_the_collector_skips_what_existed_before_the_first_event() -> None:
+    def is_traversed(node: Node) -> bool:
+        return any(each is node for each in gc.get_objects())
+
+    context = Context(clock=VirtualClock())
+    context.init(args=[])
+    node = Node("a", context=context)
+    executor = Executor(context=context)
+    executor.spin_for(1)
+    later = Node("b", context=context)
+    executor.spin_for(1)
+    assert not is_traversed(node)
+    assert is_traversed(later)
+    context.shutdown()
+    assert is_traversed(node)

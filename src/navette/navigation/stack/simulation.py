@@ -62,6 +62,7 @@ class Simulation:
         parameters: node → parameter → value, over those of the robot.
         replacements: nodes of the user instead of the stack's; see
             :meth:`NavigationStack.create`.
+        clock: instead of simulated time at the speed of the options.
 
     Raises:
         NavetteError: invalid name, file, parameter or option, named in the text.
@@ -75,13 +76,14 @@ class Simulation:
         scene: Scene | None = None,
         parameters: Mapping[str, Mapping[str, object]] | None = None,
         replacements: Mapping[str, MakeNode] | None = None,
+        clock: ContextClock | None = None,
     ) -> None:
         self.options = options
         self._parameters = parameters or {}
         self._replacements = replacements or {}
         self.resolved = resolve_scene(options, scene)
         overrides = self._overrides(self.resolved)
-        clock = _clock(options.speed)
+        clock = clock or _clock(options.speed)
         self._stopwatch = Stopwatch()
         # Taken before the first node exists: a run that cannot have its port or name
         # must not be noticed by another one.
