@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from navette.bags.node import RecorderNode
-from navette.errors import CallbackError, NetworkError
+from navette.errors import CallbackError, NetworkError, ParameterError
 from navette.msgs.topics import CLOCK
 from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.mapping.zones.node import ZonesNode
@@ -175,6 +175,7 @@ class Simulation:
             if options.headless
             else ViewerNode(context=context, listeners=self._reserved.listeners)
         )
+        self._check_map()
         self._drop_overrides_of_replaced()
         context.check_overrides()
         self.executor = Executor(context=context)
@@ -182,6 +183,21 @@ class Simulation:
             self.executor.add_node(node)
         if options.ends_with_goals:
             self.stack.missions.on_done = self.stop
+
+    def _check_map(self) -> None:
+        """Check that a run that ends with its goals has the map that amcl needs.
+
+        Raises:
+            ParameterError: no file, and no other node could publish one.
+        """
+        memory, options = self.stack.map_memory, self.options
+        is_needed = self.sim.params.locator == "amcl" and options.ends_with_goals
+        given = memory.has_parameter("map_file") and memory.get_parameter("map_file")
+        if is_needed and not options.share and given and not given.value:
+            raise ParameterError(
+                f"localization {self.sim.params.localization!r} needs a map; give one "
+                "with --map FILE.yaml (navette slam and navette map save write them)"
+            )
 
     def _add_localization(self) -> None:
         """Add the parameters of the localization nodes, below all others."""

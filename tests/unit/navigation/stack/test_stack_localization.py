@@ -63,6 +63,12 @@ def test_an_unknown_source_is_refused_with_the_known_ones() -> None:
         simulation("gps")
 
 
+def test_amcl_without_a_map_is_refused_before_the_drive() -> None:
+    """It would wait for the map until the time limit, 300 s later."""
+    with pytest.raises(ParameterError, match="needs a map; give one with --map"):
+        simulation("amcl", goals=((1.0, 0.0),))
+
+
 def test_zones_have_the_frames_of_the_robot(tmp_path: Path) -> None:
     mask = OccupancyMap(np.zeros((4, 4), np.int8), 1.0, Pose2(0.0, 0.0, 0.0))
     run = simulation("truth", keepout=write_occupancy_map(tmp_path / "mask", mask))
