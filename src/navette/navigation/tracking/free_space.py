@@ -47,8 +47,9 @@ class PlacedScan(NamedTuple):
 def passed_by(points: Points, valid: Flags, scan: PlacedScan, margin_m: float) -> Flags:
     """Return (M,) which of the valid points (M, 2), map, the scan's beams passed.
 
-    The nearest beam and two on each side of it must have gone ``margin_m`` farther; a
-    beam without a result (NaN, too near) has not passed anything.
+    The nearest beam and two on each side of it must have gone ``margin_m`` farther. A
+    beam without a return passed up to the sensor's range, a beam without a result (NaN,
+    too near) nothing.
     """
     passed = np.zeros(len(points), np.bool_)
     if len(scan.ranges) > 2 * _BESIDE and scan.angle_increment != 0.0:
@@ -59,6 +60,7 @@ def passed_by(points: Points, valid: Flags, scan: PlacedScan, margin_m: float) -
             np.array((scan.x, scan.y, scan.yaw, scan.angle_min)),
             scan.angle_increment,
             margin_m,
+            scan.range_max,
             passed,
         )
     return passed
@@ -66,7 +68,7 @@ def passed_by(points: Points, valid: Flags, scan: PlacedScan, margin_m: float) -
 
 @kernel(
     signature="void(float64[:, ::1], boolean[::1], float32[::1], float64[::1], float64,"
-    " float64, boolean[::1])",
+    " float64, float64, boolean[::1])",
 )
 def _passed_kernel(
     points: Points,
@@ -75,6 +77,7 @@ def _passed_kernel(
     sensor: NDArray[np.float64],
     increment: float,
     margin: float,
+    range_max: float,
     passed: Flags,
 ) -> None:
     x, y, yaw, first = sensor
@@ -91,6 +94,8 @@ def _passed_kernel(
         if nearest < _BESIDE or nearest >= count - _BESIDE:
             continue
         far = away + margin + 0.01 * away
+        if far >= range_max:
+            continue
         free = True
         for k in range(nearest - _BESIDE, nearest + _BESIDE + 1):
             if not ranges[k] > far:  # also not a number

@@ -34,9 +34,15 @@ def _simulator(world: World, noise_m: float = -1.0, dropout: float = 0.0) -> Sim
 
 
 def _track(
-    simulator: Simulator, seconds: float, command: tuple[float, float] = (0.0, 0.0)
+    simulator: Simulator,
+    seconds: float,
+    command: tuple[float, float] = (0.0, 0.0),
+    range_max: float = 30.0,
 ) -> list[list[TrackedObstacle]]:
-    """Return what moves at each scan, with the robot on a command."""
+    """Return what moves at each scan, with the robot on a command.
+
+    The sensor measures no farther than ``range_max``.
+    """
     obstacles = MovingObstacles(TrackingParams())
     found = []
     for _ in range(round(seconds * 1e9 / PERIOD_NS)):
@@ -45,11 +51,11 @@ def _track(
         scan = simulator.scan()
         sensor = simulator.pose().to_pose2() @ Pose2(0.055, 0.0, 0.0)
         planar = PlanarScan(
-            scan.ranges,
+            np.where(scan.ranges < range_max, scan.ranges, np.float32(np.inf)),
             scan.angle_min,
             scan.angle_increment,
             scan.range_min,
-            scan.range_max,
+            range_max,
         )
         found.append(obstacles.step(planar, sensor, simulator.now_ns))
     return found
@@ -134,6 +140,15 @@ def test_nothing_moves_in_a_still_world_with_noise_seen_from_a_moving_robot() ->
     for x, y in rng.uniform((1, 1.5), (7, 7), (30, 2)).tolist():
         world.add_cylinder((x, y), 0.075)
     found = _track(_simulator(world, 0.02, 0.05), 4.0, (0.6, 0.3))
+    assert not any(found)
+
+
+def test_nothing_moves_where_a_still_world_comes_into_the_range_of_the_sensor() -> None:
+    """A beam without a return passed nothing beyond its range."""
+    world = World().add_walls((12, 12)).add_box((4, 2), (0.5, 0.5))
+    for x in (2.0, 3.0, 4.5):
+        world.add_cylinder((x, -2.0), 0.2)
+    found = _track(_simulator(world), 5.0, (0.8, 0.1), range_max=3.5)
     assert not any(found)
 
 
