@@ -8,7 +8,7 @@ import subprocess
 import sys
 import urllib.request
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -195,3 +195,29 @@ def test_a_port_that_is_taken_is_named(refusal: Refusal) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         assert port in refusal("demo", "--port", port, "--max-time", "1")
+
+
+@pytest.mark.long
+@pytest.mark.skipif(os.name == "nt", reason="signals are not delivered on Windows")
+def test_ctrl_c_ends_a_benchmark_and_its_workers(tmp_path: Path) -> None:
+    """A terminal interrupts the whole group: the command, fork server and workers."""
+    results = tmp_path / "results.jsonl"
+    process = subprocess.Popen(
+        [*NAVETTE, "bench", "barn-like", "--worlds", "0-99", "--jobs", "2",
+         "--results", str(results)],
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    )  # fmt: skip
+    try:
+        while not results.exists() or not results.read_text():
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.1)
+            assert process.returncode is None
+        os.killpg(process.pid, signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+    finally:
+        with suppress(ProcessLookupError):  # all have ended, as they should
+            os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 130
+    assert "interrupted; the same command continues" in errors
+    assert "Traceback" not in errors

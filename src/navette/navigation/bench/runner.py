@@ -4,6 +4,7 @@ import dataclasses
 import hashlib
 import json
 import multiprocessing
+import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib.metadata import version
@@ -79,13 +80,18 @@ def _run(
             yield trial, run_trial(trial, load_nodes)
         return
     context = multiprocessing.get_context("forkserver")
-    with ProcessPoolExecutor(jobs, context) as pool:
+    # A worker that Ctrl-C interrupts while it holds the lock of the queue would block
+    # the others: workers ignore it, and are ended here.
+    ignored = (signal.SIGINT, signal.SIG_IGN)
+    with ProcessPoolExecutor(jobs, context, signal.signal, ignored) as pool:
         running = {pool.submit(run_trial, each, load_nodes): each for each in trials}
         try:
             for future in as_completed(running):
                 yield running[future], future.result()
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+        except BaseException:
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
 
 
 def trial_key(trial: Trial) -> str:
