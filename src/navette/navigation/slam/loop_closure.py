@@ -104,7 +104,7 @@ class LoopFinder:
         params, centers = self.params, graph.view_centers()
         here = centers[query.first : query.last].mean(axis=0)
         found = []
-        for target in graph.chunks(params.submap_scans):
+        for target in graph.chunks(params.submap_scans, params.submap_length_m):
             covariance = relative[target.anchor]
             if target.last > query.first or not np.isfinite(covariance[0, 0]):
                 continue

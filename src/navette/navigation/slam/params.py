@@ -111,7 +111,12 @@ class SlamParams(FrameParams):
     )  # fmt: skip
 
     # Loop closure
-    submap_scans: int = param(10, "key scans of a submap", at_least=2, at_most=200)
+    submap_scans: int = param(
+        10, "key scans of a submap at most", at_least=2, at_most=200
+    )
+    submap_length_m: float = param(
+        5.0, "path after which a submap with fewer key scans is complete", above=0.0
+    )
     loop_search_max_m: float = param(
         15.0, "largest distance searched for a loop closure", above=0.0
     )

@@ -17,6 +17,8 @@ Matrix = NDArray[np.float64]
 
 # A robot looks at the place this far before it: scanners see ahead, or all around.
 _AHEAD_M = 1.0
+# Key scans of a chunk at least: fewer contain too few surfaces.
+_LEAST_SCANS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,7 @@ class ScanGraph:
         self.sessions: list[int] = []
         self._poses = np.empty((0, 3))
         self._centers: list[NDArray[np.float64]] = []
+        self._path_m: list[float] = []  # up to each key scan, when it was added
         self._table = EdgeList()
 
     def __len__(self) -> int:
@@ -82,6 +85,8 @@ class ScanGraph:
         if starts_session:
             self.sessions.append(node)
         self.keys.append(key)
+        step_m = self.pose(node - 1).distance_to(pose) if node else 0.0
+        self._path_m.append(step_m + (self._path_m[-1] if node else 0.0))
         self._poses = np.vstack([self._poses, np.array(pose)])
         # Where a scan looks: half-way to the middle of its points.
         points = key.points[:, :2]
@@ -131,11 +136,40 @@ class ScanGraph:
         """Whether any scan of a chunk has an echo in range."""
         return any(len(self.keys[node].points) for node in range(*chunk))
 
-    def chunks(self, size: int) -> list[ScanChunk]:
-        """Return all complete chunks of ``size`` key scans of one session."""
-        ends = [*self.sessions[1:], len(self.keys)]
-        return [
-            ScanChunk(first, first + size)
-            for start, end in zip(self.sessions, ends, strict=True)
-            for first in range(start, end - size + 1, size)
-        ]
+    def chunks(self, most: int, length_m: float) -> list[ScanChunk]:
+        """Return all complete chunks of each session.
+
+        Args:
+            most: key scans of a chunk.
+            length_m: path after which a chunk with fewer is complete.
+        """
+        found: list[ScanChunk] = []
+        for start, end in zip(
+            self.sessions, [*self.sessions[1:], len(self.keys)], strict=True
+        ):
+            first = start
+            for last in range(start + 1, end + 1):
+                if self._is_complete(ScanChunk(first, last), most, length_m):
+                    found.append(ScanChunk(first, last))
+                    first = last
+        return found
+
+    def newest_chunk(self, most: int, length_m: float) -> ScanChunk | None:
+        """Return the chunk that ends with the newest key scan of this session."""
+        count = len(self.keys)
+        for first in range(count - 1, self.sessions[-1] - 1, -1):
+            chunk = ScanChunk(first, count)
+            if self._is_complete(chunk, most, length_m):
+                return chunk
+        return None
+
+    def path_m(self, first: int, last: int) -> float:
+        """Return the length of the path between two key scans, as it was driven."""
+        return self._path_m[last] - self._path_m[first]
+
+    def _is_complete(self, chunk: ScanChunk, most: int, length_m: float) -> bool:
+        count = chunk.last - chunk.first
+        if count >= most:
+            return True
+        path_m = self.path_m(chunk.first, chunk.last - 1)
+        return count >= _LEAST_SCANS and path_m >= length_m

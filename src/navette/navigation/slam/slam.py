@@ -24,7 +24,7 @@ from navette.navigation.slam.pose_graph import GraphEdge, mahalanobis
 from navette.navigation.slam.refinement import PosePrior, Refined
 from navette.navigation.slam.relocation import locate
 from navette.navigation.slam.rendering import MapScan, render
-from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
+from navette.navigation.slam.scan_graph import KeyScan, ScanGraph
 from navette.navigation.slam.scan_points import scan_points
 from navette.navigation.slam.tracking import DOUBTFUL, LocalMap, match
 from navette.navigation.slam.visibility import SensorView
@@ -106,6 +106,7 @@ class Slam:
         # A map of what the robot has seen since its place is unknown.
         self._scout: Slam | None = None
         self._finder = LoopFinder(params)
+        self._queried = 0  # newest key scan at the last search for loops
         self._motion = MotionModel(params)
         self._track: list[_Tracked] = []
         # The key scan that the newest poses are relative to.
@@ -374,10 +375,14 @@ class Slam:
 
     def _close_loops(self) -> bool:
         """Search for places seen before; return whether poses changed."""
-        size, count = self.params.submap_scans, len(self.graph)
-        if count % max(1, size // 2) or count - self.graph.sessions[-1] < size:
+        if not self._is_half_a_submap_later():
             return False
-        edges = self._finder.find(ScanChunk(count - size, count), self.graph)
+        params = self.params
+        query = self.graph.newest_chunk(params.submap_scans, params.submap_length_m)
+        if query is None:
+            return False
+        self._queried = query.last - 1
+        edges = self._finder.find(query, self.graph)
         if not edges:
             return False
         self.graph.connect(edges)
@@ -387,6 +392,15 @@ class Slam:
             self._continue_from_graph()
         self._key_covariance = self.graph.covariances_from(0)[-1]
         return not fits
+
+    def _is_half_a_submap_later(self) -> bool:
+        """Whether the robot moved enough since the last search for loops."""
+        params, newest = self.params, len(self.graph) - 1
+        since = max(self._queried, self.graph.sessions[-1])
+        return (
+            newest - since >= max(1, params.submap_scans // 2)
+            or self.graph.path_m(since, newest) >= params.submap_length_m / 2
+        )
 
     def _continue_from_graph(self) -> None:
         """Place the robot relative to its key scan, after poses changed."""

@@ -56,6 +56,15 @@ def test_scanners_of_other_kinds(beams: int, degrees: float) -> None:
     assert np.sqrt((errors_m(estimates, truths) ** 2).mean()) < 0.05
 
 
+def test_scans_two_metres_apart_close_the_loop() -> None:
+    """Ten of them are a drive of 20 m, and see no place in common."""
+    slam, _, _ = mapped(seed=3, poses=loop(2.0), noise=0.1, yaw_per_m=0.02)
+    assert slam.loop_closures >= 3
+    for chunk in slam.graph.chunks(10, 5.0):
+        assert 3 <= chunk.last - chunk.first <= 10
+        assert slam.graph.path_m(chunk.first, chunk.last - 1) < 5.0 + 2.0
+
+
 def test_scans_far_apart_with_much_noise() -> None:
     slam, truths, _ = mapped(seed=3, poses=loop(1.0), noise=0.1, yaw_per_m=0.02)
     slam.refine()

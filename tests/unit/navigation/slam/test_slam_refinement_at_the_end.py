@@ -79,5 +79,5 @@ def test_submaps_without_echoes_are_left_out_of_the_search_for_loops() -> None:
         scan = scan_at(walls, pose, beams=180, noise=noise, range_m=6.0)
         slam.add((k + 1) * 100_000_000, scan, pose)
     slam.refine()
-    assert any(not slam.graph.has_points(each) for each in slam.graph.chunks(10))
+    assert any(not slam.graph.has_points(each) for each in slam.graph.chunks(10, 5.0))
     assert np.isfinite(slam.graph.poses).all()
