@@ -46,12 +46,16 @@ T = TypeVar("T")
 def kernel(function: Callable[P, T]) -> Callable[P, T]: ...
 @overload
 def kernel(
-    *, signature: str | None = None, **options: Any
+    *, signature: str | None = None, allocates: bool = True, **options: Any
 ) -> Callable[[Callable[P, T]], Callable[P, T]]: ...
 
 
 def kernel(
-    function: Any = None, *, signature: str | None = None, **options: Any
+    function: Any = None,
+    *,
+    signature: str | None = None,
+    allocates: bool = True,
+    **options: Any,
 ) -> Any:
     """Compile a function with Numba on its first call, or load it from the cache.
 
@@ -59,13 +63,20 @@ def kernel(
         function: arrays and numbers in and out; its globals are numbers, modules and
             other kernels.
         signature: the only types that it takes; compiled or loaded at once.
+        allocates: False for a kernel that creates and returns no arrays, so that no
+            references are counted. In small kernels that others call, counting took
+            four times as long as the work of a lattice search.
         options: of ``numba.njit``.
 
     Kernels release the GIL: other threads run meanwhile.
     """
     if function is None:
-        return functools.partial(kernel, signature=signature, **options)
+        return functools.partial(
+            kernel, signature=signature, allocates=allocates, **options
+        )
     options = {"nogil": True, **options}
+    if not allocates:
+        options["_nrt"] = False
     compiled: Any = numba.njit(**options)(function)
     if compiled is not function:  # it is with NUMBA_DISABLE_JIT
         compiled._cache = KernelCache(function, options)

@@ -22,7 +22,7 @@ PLANE, BOX, SPHERE, CYLINDER, CAPSULE, ELLIPSOID, OTHER = range(7)
 _Floats = NDArray[np.float64]
 
 
-@kernel(inline="never")
+@kernel(allocates=False, inline="never")
 def _quadratic(a: float, b: float, c: float) -> tuple[float, float]:
     """Roots of a t² + 2 b t + c in ascending order; NaN without real roots."""
     d = b * b - a * c

@@ -4,6 +4,7 @@ import importlib
 import json
 import os
 import pickle
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -308,9 +309,8 @@ def test_globals_of_kernels_are_numbers_modules_or_kernels() -> None:
 TABLE = {1: 2}
 
 
-def test_every_kernel_of_navette_can_be_stored() -> None:
+def _kernels_of_navette() -> Iterator[Any]:
     package = Path(navette.__file__).parent
-    found = 0
     for path in package.rglob("*.py"):
         if "import kernel\n" not in path.read_text():
             continue
@@ -318,7 +318,28 @@ def test_every_kernel_of_navette_can_be_stored() -> None:
         module = importlib.import_module(name)  # noqa: TID251 - all that have kernels
         for each in vars(module).values():
             if isinstance(each, Dispatcher):
-                assert isinstance(each._cache, kernels.KernelCache)
-                assert kernels._describe_function(each.py_func)
-                found += 1
+                yield each
+
+
+def test_every_kernel_of_navette_can_be_stored() -> None:
+    found = 0
+    for each in _kernels_of_navette():
+        assert isinstance(each._cache, kernels.KernelCache)
+        assert kernels._describe_function(each.py_func)
+        found += 1
     assert found > 80
+
+
+def test_kernels_that_count_no_references_return_no_arrays() -> None:
+    """The caller would release an array that it was not given."""
+    found = 0
+    for each in _kernels_of_navette():
+        if each.targetoptions.get("_nrt", True):
+            continue
+        returned = str(each.py_func.__annotations__["return"])
+        parts = set(re.findall(r"[\w.]+", returned.removeprefix("tuple")))
+        assert parts <= {"None", "float", "int", "bool", "class", "np.uint64"} | {
+            "numpy.uint64"
+        }, f"{each.py_func.__name__} returns {returned}"
+        found += 1
+    assert found > 20

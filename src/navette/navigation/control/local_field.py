@@ -78,7 +78,7 @@ def _measure(points: Any, resolution: float, exact_m: float, reach_m: float) -> 
     return field, x, y
 
 
-@kernel
+@kernel(allocates=False)
 def _mark(is_near: Any, u: float, v: float, reach: float) -> None:
     """Mark the blocks within reach of a point (cells)."""
     first, last = int((u - reach) / _BLOCK), int((u + reach) / _BLOCK)
@@ -104,7 +104,7 @@ def _lower(square: Any, u: float, v: float, cells: int) -> None:
                 square[np.uintp(i), at] = there if there < before else before
 
 
-@kernel
+@kernel(allocates=False)
 def _finish(line: Any, is_near: Any, resolution: Any) -> None:
     """Convert squares of cells to metres, in blocks with an obstacle within reach."""
     for block in range(is_near.size):

@@ -246,7 +246,7 @@ def _chunk_costs(
     _remaining_costs(pose, path, at, weights.progress, costs)
 
 
-@kernel
+@kernel(allocates=False)
 def _largest(values: Array32) -> float:
     # Not values.max(): its machine code imports Numba's implementation, and SciPy.
     largest: float = values[0]
@@ -255,7 +255,7 @@ def _largest(values: Array32) -> float:
     return largest
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(allocates=False, nogil=True, fastmath=True)
 def _effort_costs(
     before: Array32, after: Array32, weight: float, costs: Array32
 ) -> None:
@@ -388,7 +388,7 @@ def _cells_of_point(
         cells[i] = row * stride + column
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(allocates=False, nogil=True, fastmath=True)
 def _lower(flat: Array32, cells: Indices, less: float, least: Array32) -> None:
     """Lower the clearances to that of a body point, in the cells."""
     for i in range(cells.size):
@@ -482,7 +482,7 @@ def _path_costs(
         costs[i] += (cost + weights.reverse * against) * step_s
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(allocates=False, nogil=True, fastmath=True)
 def _delay_costs(
     path: PathTable, at: Indices, weight: float, steps: int, costs: Array32
 ) -> None:
@@ -498,7 +498,7 @@ def _delay_costs(
         costs[i] += share * (end - measure[np.uint32(at[i])])
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(allocates=False, nogil=True, fastmath=True)
 def _remaining_costs(
     pose: Array32, path: PathTable, at: Indices, weight: float, costs: Array32
 ) -> None:

@@ -58,7 +58,7 @@ def grazing_margins(
     return margins
 
 
-@kernel
+@kernel(allocates=False)
 def _margins_kernel(
     ranges: Any,
     directions: Any,
@@ -79,7 +79,7 @@ def _margins_kernel(
             margins[i] = min(clearance / squarest - clearance, most)
 
 
-@kernel
+@kernel(allocates=False)
 def _sine(
     ranges: Any, directions: Any, i: int, j: int, range_min: float, range_max: float
 ) -> float:

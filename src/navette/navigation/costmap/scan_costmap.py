@@ -137,7 +137,7 @@ class ScanCostmap:
         return self._directions
 
 
-@kernel
+@kernel(allocates=False)
 def _end_points(
     ranges: Any, directions: Any, least: Any, most: Any, half: float, points: Any
 ) -> int:

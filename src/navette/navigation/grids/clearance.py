@@ -121,7 +121,7 @@ def body_clearance(
     return clearance
 
 
-@kernel
+@kernel(allocates=False)
 def distance_at(grid: DistanceGrid, x: float, y: float) -> float:
     """Distance (m) at a point of the grid's frame, bilinear between cell centres.
 
@@ -133,7 +133,7 @@ def distance_at(grid: DistanceGrid, x: float, y: float) -> float:
     return metres
 
 
-@kernel
+@kernel(allocates=False)
 def pose_clearance(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, enough_m: float
 ) -> float:
@@ -157,7 +157,7 @@ def pose_clearance(
     return least - margin
 
 
-@kernel
+@kernel(allocates=False)
 def pose_is_clear(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
@@ -192,7 +192,7 @@ def _to_cells(
     return (u, v, frame.cos * cos + frame.sin * sin, frame.cos * sin - frame.sin * cos)
 
 
-@kernel
+@kernel(allocates=False)
 def _interpolate(
     distance_m: NDArray[np.float32], u: float, v: float, outside_m: float
 ) -> float:
@@ -213,7 +213,7 @@ def _interpolate(
     return (1.0 - fv) * low + fv * high
 
 
-@kernel
+@kernel(allocates=False)
 def _clearances(
     grid: DistanceGrid,
     body: Body,

@@ -180,7 +180,7 @@ class CollisionCheck:
         return min(_MAX_POSES, math.ceil(travel / _STEP_M))
 
 
-@kernel(signature="float64(float64, float64)")
+@kernel(allocates=False, signature="float64(float64, float64)")
 def _least(now: float, margin: float) -> float:
     """Return the clearance to keep: within the margin, along and away is allowed."""
     if now >= margin:
@@ -189,7 +189,7 @@ def _least(now: float, margin: float) -> float:
     return max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - _ROUNDING_M
 
 
-@kernel(signature="UniTuple(float64, 3)(float64[::1], float64)")
+@kernel(allocates=False, signature="UniTuple(float64, 3)(float64[::1], float64)")
 def _moved(motion: Array, t: float) -> tuple[float, float, float]:
     """Return the pose after ``t`` seconds of a motion, see :func:`free_motion`."""
     yaw, v, omega, side = motion[2], motion[3], motion[4], motion[5]
@@ -204,6 +204,7 @@ def _moved(motion: Array, t: float) -> tuple[float, float, float]:
 
 
 @kernel(
+    allocates=False,
     signature="UniTuple(float64, 2)(float64[:, ::1], float64[:, ::1], float64[::1],"
     " int64, float64[::1])",
 )
@@ -238,6 +239,7 @@ def free_motion(
 
 
 @kernel(
+    allocates=False,
     signature="int64(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
 )
 def tight_pose(points: Array, outline: Array, poses: Array, body: Array) -> int:
@@ -266,6 +268,7 @@ def tight_pose(points: Array, outline: Array, poses: Array, body: Array) -> int:
 
 
 @kernel(
+    allocates=False,
     signature="float64(float64[:, ::1], float64[:, ::1], float64[::1], int64, float64)",
 )
 def seen_motion(

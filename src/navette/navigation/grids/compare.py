@@ -79,7 +79,7 @@ def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> Cel
     )
 
 
-@kernel
+@kernel(allocates=False)
 def _unmatched(
     grid: Cells, window: CellWindow, other: Cells, other_T_grid: Affine, least: np.int8
 ) -> int:
@@ -101,7 +101,7 @@ def _unmatched(
     return count
 
 
-@kernel
+@kernel(allocates=False)
 def _lethal_near(grid: Cells, row: int, column: int) -> bool:
     """Whether a lethal cell is among the nine around (row, column)."""
     height, width = grid.shape

@@ -89,7 +89,7 @@ def make_scratch(shape: tuple[int, ...], radius_cells: int) -> Scratch:
     )
 
 
-@kernel
+@kernel(allocates=False)
 def _first_row(occupied: Any, row: Any, far: Any, zero: Any) -> None:
     for c in range(row.size):
         row[c] = far if occupied[c] == 0 else zero

@@ -73,7 +73,7 @@ def exact_clearances(
     return clearance
 
 
-@kernel(signature="float64(float64[:, ::1], float64, float64)")
+@kernel(allocates=False, signature="float64(float64[:, ::1], float64, float64)")
 def signed_distance(outline: Array, x: float, y: float) -> float:
     """Return the distance (m) of (x, y) to the polygon (K, 2), negative inside."""
     best = np.inf
@@ -95,6 +95,7 @@ def signed_distance(outline: Array, x: float, y: float) -> float:
 
 
 @kernel(
+    allocates=False,
     signature="float64(float64[:, ::1], float64[:, ::1], float64, float64, float64,"
     " float64, float64)",
 )
@@ -119,7 +120,7 @@ def body_distance(
     return best
 
 
-@kernel
+@kernel(allocates=False)
 def exact_clearance(
     obstacles: ObstacleGrid,
     outline: Outline,
@@ -167,7 +168,7 @@ def exact_clearance(
     return best
 
 
-@kernel
+@kernel(allocates=False)
 def _of_points(
     outline: Outline,
     mask: np.uint64,
@@ -192,7 +193,7 @@ def _of_points(
     return best - 0.5 * step
 
 
-@kernel
+@kernel(allocates=False)
 def _exact_clearances(
     obstacles: ObstacleGrid,
     outline: Outline,

@@ -155,7 +155,7 @@ def _stamp(raised: Cells, stamp: Cells, row: int, column: int) -> None:
                 raised[np.uintp(row + i), at] = new if new > before else before
 
 
-@kernel
+@kernel(allocates=False)
 def _raise_row(cost: Cells, raised: Cells, lowest: np.int8, inflated: Cells) -> None:
     for c in range(cost.size):
         current = cost[c]
@@ -177,7 +177,7 @@ def _inflate_kernel(
         _look_up_row(cost[r], table, lowest, row_squares(scratch, r), inflated[r])
 
 
-@kernel
+@kernel(allocates=False)
 def _look_up_row(
     cost: Cells,
     table: NDArray[np.int8],

@@ -111,7 +111,7 @@ def _merge_kernel(
                 _push_lethal(target, source[r], alignment.target_T_source, r)
 
 
-@kernel
+@kernel(allocates=False)
 def _push_lethal(
     target: Cells, source_row: Cells, target_T_source: Affine, r: int
 ) -> None:
@@ -123,13 +123,13 @@ def _push_lethal(
                 target[row, column] = LETHAL
 
 
-@kernel
+@kernel(allocates=False)
 def _overwrite_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
         target[c] = pulled[c] if pulled[c] >= 0 else target[c]
 
 
-@kernel
+@kernel(allocates=False)
 def _keep_lethal_row(target: Cells, pulled: Cells) -> None:
     lethal = np.int8(LETHAL)
     for c in range(target.size):
@@ -137,7 +137,7 @@ def _keep_lethal_row(target: Cells, pulled: Cells) -> None:
         target[c] = known if target[c] < lethal else target[c]
 
 
-@kernel
+@kernel(allocates=False)
 def _chord(
     v: float, center: float, radius: float, first: int, last: int
 ) -> tuple[int, int]:
@@ -153,7 +153,7 @@ def _chord(
     return near, max(min(far, last), near)
 
 
-@kernel
+@kernel(allocates=False)
 def _max_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
         target[c] = pulled[c] if pulled[c] > target[c] else target[c]

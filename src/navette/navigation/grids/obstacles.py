@@ -270,7 +270,7 @@ def _shift_of_cells(spec: GridSpec, other: GridSpec) -> tuple[int, int] | None:
     return (row, column) if math.hypot(v - row, u - column) < _SAME_CELLS else None
 
 
-@kernel
+@kernel(allocates=False)
 def _has_lost(now: Any, before: Any, near: Any, down: int, right: int) -> bool:
     """Return whether a cell in a window is unknown now and was known before.
 

@@ -150,7 +150,7 @@ def _trace_kernel(
     return hits
 
 
-@kernel
+@kernel(allocates=False)
 def _free_between(
     flat: Cells,
     height: int,
@@ -191,7 +191,7 @@ def _free_between(
                 flat[row * width + column] = FREE
 
 
-@kernel
+@kernel(allocates=False)
 def _surface(beams: _Beams, i: int) -> float:
     """Return how far the space between beams i − 1 and i is free; 0 = not known.
 
@@ -215,7 +215,7 @@ def _surface(beams: _Beams, i: int) -> float:
     return reach
 
 
-@kernel
+@kernel(allocates=False)
 def _exit(start: float, speed: float, size: int) -> float:
     """Time at which a point that moves from ``start`` at ``speed`` leaves [0, size)."""
     if speed > 0.0:
@@ -225,7 +225,7 @@ def _exit(start: float, speed: float, size: int) -> float:
     return np.inf
 
 
-@kernel
+@kernel(allocates=False)
 def _free_line(
     flat: Cells, width: int, r0: int, c0: int, r1: int, c1: int, share: float
 ) -> None:

@@ -181,7 +181,7 @@ def _wrapped(yaw: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.remainder(yaw + math.pi, math.tau) - math.pi)
 
 
-@kernel
+@kernel(allocates=False)
 def _fill_stamp(
     stamp: Masks,
     vertices: NDArray[np.float64],
@@ -210,7 +210,7 @@ def _fill_stamp(
                     stamp[i, j] |= bit
 
 
-@kernel
+@kernel(allocates=False)
 def _close(closed: Masks, cells: NDArray[np.int64], stamp: Masks) -> None:
     edge = stamp.shape[0]
     for n in range(cells.shape[0]):
@@ -245,7 +245,7 @@ def _flood(open_: Masks, reached: Masks, cells: NDArray[np.int64], stack: Any) -
                     count += 1
 
 
-@kernel
+@kernel(allocates=False)
 def _turned(mask: np.uint64, open_: np.uint64) -> np.uint64:
     """Return the headings that turning in place reaches from those of a mask."""
     one, last = np.uint64(1), np.uint64(_HEADINGS - 1)
@@ -258,7 +258,7 @@ def _turned(mask: np.uint64, open_: np.uint64) -> np.uint64:
         mask = more
 
 
-@kernel
+@kernel(allocates=False)
 def _drive(
     open_: Masks, reached: Masks, position: Any, links: Any, moves: Any, yaw: float
 ) -> int:

@@ -127,7 +127,7 @@ class CellCosts:
         return near
 
 
-@kernel
+@kernel(allocates=False)
 def _fill(
     occupancy: Any,
     distance_m: Any,

@@ -65,7 +65,7 @@ class CheapTiles:
         return other
 
 
-@kernel
+@kernel(allocates=False)
 def _mark_cheap(cost: Any, floor: Any, window: Any, cheap: Any) -> bool:
     """Mark the tiles of a window; return whether any mark changed."""
     height, width = cost.shape
@@ -86,7 +86,7 @@ def _mark_cheap(cost: Any, floor: Any, window: Any, cheap: Any) -> bool:
     return changed
 
 
-@kernel
+@kernel(allocates=False)
 def _spread(away: Any) -> None:
     """Turn 0 and far into octile distances between tiles, units; a rim stays far."""
     height, width = away.shape

@@ -161,7 +161,7 @@ def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
             push(pool, queue, g >> shift, item)
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
 def _corner(grid: Any, index: int, k: int) -> bool:
     """Return whether diagonal move ``k`` passes a closed orthogonal neighbour."""
     cost, stride, straight, _ = grid
@@ -173,7 +173,7 @@ def _corner(grid: Any, index: int, k: int) -> bool:
     )
 
 
-@kernel
+@kernel(allocates=False)
 def _descend(grid: Any, field: Any, index: int, path: Any) -> int:
     """Fill ``path`` with cells along which ``field`` falls by exactly the step's cost.
 

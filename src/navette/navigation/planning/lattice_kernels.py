@@ -143,7 +143,7 @@ def grow(
     return best_node, expanded
 
 
-@kernel
+@kernel(allocates=False)
 def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     """Create the root; return its bucket."""
     tree.position[0, 0], tree.position[0, 1] = start[0], start[1]
@@ -156,7 +156,7 @@ def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     return _estimate(nothing, ahead) >> SHIFT
 
 
-@kernel
+@kernel(allocates=False)
 def _branch(
     scene: Any,
     moves: Any,
@@ -214,13 +214,13 @@ def _branch(
     return used, first
 
 
-@kernel
+@kernel(allocates=False)
 def _estimate(g: int, ahead: int) -> int:
     """Return f, the estimated cost of a path through this pose."""
     return g + (int(HEURISTIC_WEIGHT * ahead) if ahead < UNREACHED else 0)
 
 
-@kernel
+@kernel(allocates=False)
 def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
     cost = moves.costs[m] * factor
     if before >= 0 and moves.directions[before] * moves.directions[m] < 0:
@@ -228,7 +228,7 @@ def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
     return int(cost)
 
 
-@kernel
+@kernel(allocates=False)
 def _fits(
     scene: Any, moves: Any, m: int, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
@@ -245,7 +245,7 @@ def _fits(
     return moves.directions[m] >= 0 or _is_seen(scene, moves, m, x, y, yaw)
 
 
-@kernel
+@kernel(allocates=False)
 def _is_seen(scene: Any, moves: Any, m: int, x: float, y: float, yaw: float) -> bool:
     """Return whether the body stays in space that was seen at the end of move ``m``."""
     end = moves.counts[m] - 1
@@ -261,7 +261,7 @@ def _is_seen(scene: Any, moves: Any, m: int, x: float, y: float, yaw: float) -> 
     return bool(depth >= border)
 
 
-@kernel
+@kernel(allocates=False)
 def _exact(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
     """Return the exact clearance, where the distance field cannot prove enough."""
     clearance: float = exact_clearance(
@@ -270,7 +270,7 @@ def _exact(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float
     return clearance
 
 
-@kernel
+@kernel(allocates=False)
 def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
     clearance: float = pose_clearance(scene.grid, scene.body, x, y, yaw, enough_m)
     if clearance < scene.margin_m:
@@ -278,7 +278,7 @@ def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> f
     return clearance
 
 
-@kernel
+@kernel(allocates=False)
 def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     """Return (cost to go, cost factor) at a point; the factor is −1 outside.
 
@@ -303,14 +303,14 @@ def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     return int((a + (b - a) * u) * (1.0 - v) + (c + (d - c) * u) * v), factor
 
 
-@kernel
+@kernel(allocates=False)
 def _to_cells(frame: Any, x: float, y: float) -> tuple[float, float]:
     dx, dy = x - frame[0], y - frame[1]
     u = (frame[2] * dx + frame[3] * dy) / frame[4]
     return u, (frame[2] * dy - frame[3] * dx) / frame[4]
 
 
-@kernel
+@kernel(allocates=False)
 def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int) -> int:
     u, v = _to_cells(frame, x, y)
     row, column = int(v / tree.bin_cells), int(u / tree.bin_cells)
@@ -318,7 +318,7 @@ def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int)
     return at
 
 
-@kernel
+@kernel(allocates=False)
 def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
     """Return the cost in units of ending here; NOWHERE outside the goal.
 

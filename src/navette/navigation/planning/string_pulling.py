@@ -119,7 +119,7 @@ def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
     return count
 
 
-@kernel
+@kernel(allocates=False)
 def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
     """Return the furthest point of a straight segment by doubling, then bisection."""
     last = fine.shape[0] - 1

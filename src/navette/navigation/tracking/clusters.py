@@ -56,6 +56,7 @@ def segment(
 
 
 @kernel(
+    allocates=False,
     signature="int64(float64[:, ::1], boolean[::1], float64[::1], float64,"
     " int64[:, ::1])",
 )

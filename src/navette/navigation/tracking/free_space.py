@@ -67,6 +67,7 @@ def passed_by(points: Points, valid: Flags, scan: PlacedScan, margin_m: float) -
 
 
 @kernel(
+    allocates=False,
     signature="void(float64[:, ::1], boolean[::1], float32[::1], float64[::1], float64,"
     " float64, float64, boolean[::1])",
 )
