@@ -18,6 +18,7 @@ from navette.navigation.grids import sparse_zeros
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
+    has_room,
     new_pool,
     pop,
     push,
@@ -42,6 +43,7 @@ _LAST_STAMP = 32_766
 _G_MASK = (1 << 44) - 1
 _OBLIQUE = DIAGONAL - STRAIGHT
 _CLOSED = 8
+_NEIGHBOURS = 8
 _NEVER = 1 << 60
 _NOWHERE = np.zeros((1, 1), np.int64)
 
@@ -148,19 +150,32 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
 
     An open item is row << 16 | column.
     """
-    stride, records, state, shift = (
-        grid.stride,
-        query.records,
-        queue.state,
-        queue.shift,
-    )
     row, column = query.start_row, query.start_column
-    bucket = _to_goal(query, row, column) >> shift
-    records[row * stride + column] = query.base | (_G_MASK << 4)
+    bucket = _to_goal(query, row, column) >> queue.shift
+    query.records[row * grid.stride + column] = query.base | (_G_MASK << 4)
     push(pool, queue, bucket, (row << 16) | column)
     best: Any = np.int64(query.bound)
-    found = False
-    while state[WAITING] > 0 and bucket <= best >> shift:
+    found, done = False, False
+    while not done:
+        pool = reserve(pool, queue, _NEIGHBOURS)
+        bucket, best, found, done = _expand_while_room(
+            grid, query, queue, pool, bucket, best, found
+        )
+    return (best if found else np.int64(-1)), pool
+
+
+@kernel(allocates=False)
+def _expand_while_room(
+    grid: Any, query: Any, queue: Any, pool: Any, bucket: Any, best: Any, found: bool
+) -> tuple[int, int, bool, bool]:
+    """Expand cells until the search is done, or the pool is full.
+
+    Returns the bucket, g of the goal, whether it was reached, whether that is final.
+    """
+    stride, records, shift = grid.stride, query.records, queue.shift
+    while queue.state[WAITING] > 0 and bucket <= best >> shift:
+        if not has_room(pool, queue, _NEIGHBOURS):
+            return bucket, best, found, False
         item = pop(pool, queue, bucket)
         if item < 0:
             bucket += 1
@@ -171,15 +186,14 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
         if record & _CLOSED:
             continue
         records[index] = record | _CLOSED
-        pool = reserve(pool, queue, 8)
         g = _G_MASK - ((record >> 4) & _G_MASK)
         least = _expand(grid, query, queue, pool, bucket, row, column, g, best)
         found |= least < best
         best = least
-    return (best if found else np.int64(-1)), pool
+    return bucket, best, found, True
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
 def _expand(
     grid: Any,
     query: Any,
@@ -232,7 +246,7 @@ def _expand(
     return best
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
 def _to_goal(query: Any, row: Any, column: Any) -> Any:
     """Return the least cost from a cell of the rimmed grid to the goal.
 
@@ -251,7 +265,7 @@ def _to_goal(query: Any, row: Any, column: Any) -> Any:
     return least + apart * query.excess // 10_000
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
 def _octile(rows: Any, columns: Any) -> Any:
     """Return the least cost over free cells: the heuristic."""
     rows = rows if rows >= 0 else -rows

@@ -65,7 +65,13 @@ def reserve(pool: Any, queue: Any, pushes: int) -> Any:
     return larger
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
+def has_room(pool: Any, queue: Any, pushes: int) -> bool:
+    """Return whether the pool has room for ``pushes`` more."""
+    return bool(queue.state[USED] + pushes <= pool.size)
+
+
+@kernel(allocates=False, forceinline=True)
 def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
     """Add ``item`` (31 bits) to the bucket; call :func:`reserve` before."""
     heads, state = queue.heads, queue.state
@@ -81,7 +87,7 @@ def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
     state[WAITING] += 1
 
 
-@kernel(forceinline=True)
+@kernel(allocates=False, forceinline=True)
 def pop(pool: Any, queue: Any, bucket: int) -> Any:
     """Remove and return the newest item of the bucket, or −1 if it is empty."""
     heads, state = queue.heads, queue.state

@@ -15,6 +15,7 @@ from navette.files.kernels import kernel
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
+    has_room,
     new_pool,
     pop,
     push,
@@ -30,6 +31,7 @@ from navette.navigation.planning.traversal import (
 
 UNREACHED = 1 << 60
 """Cost to go of a cell without a path to a goal."""
+_NEIGHBOURS = 8
 
 Field = NDArray[np.int64]
 
@@ -115,27 +117,38 @@ class _Wave(NamedTuple):
 
 
 @kernel
-def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
+def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> None:
     """Lower the field from the seeds (N, 3) row, column, cost outwards.
 
     An entry's item is row << 16 | column. A step is charged for the cell it enters, so
     a step of the wave is charged for the cell that it comes from.
     """
+    field = wave.field
+    for i in range(seeds.shape[0]):
+        index = seeds[i, 0] * grid.stride + seeds[i, 1]
+        if grid.straight[grid.cost[index]] != 0 and seeds[i, 2] < field[index]:
+            field[index] = seeds[i, 2]
+            pool = reserve(pool, queue, 1)
+            item = (seeds[i, 0] << 16) | seeds[i, 1]
+            push(pool, queue, seeds[i, 2] >> queue.shift, item)
+    bucket: Any = np.int64(0)
+    while bucket >= 0:
+        pool = reserve(pool, queue, _NEIGHBOURS)
+        bucket = _spread_while_room(grid, wave, queue, pool, bucket)
+
+
+@kernel(allocates=False)
+def _spread_while_room(grid: Any, wave: Any, queue: Any, pool: Any, bucket: Any) -> int:
+    """Spread until the wave is done (−1), or the pool is full; return the bucket."""
     cost, stride, straight, diagonal = grid
     field, closed, stop = wave
     state, shift = queue.state, queue.shift
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
     rows = (-1, 1, 0, 0, -1, -1, 1, 1)
     columns = (0, 0, -1, 1, -1, 1, -1, 1)
-    for i in range(seeds.shape[0]):
-        index = seeds[i, 0] * stride + seeds[i, 1]
-        if straight[cost[index]] != 0 and seeds[i, 2] < field[index]:
-            field[index] = seeds[i, 2]
-            pool = reserve(pool, queue, 1)
-            item = (seeds[i, 0] << 16) | seeds[i, 1]
-            push(pool, queue, seeds[i, 2] >> shift, item)
-    bucket = 0
     while state[WAITING] > 0 and (stop < 0 or bucket <= field[stop] >> shift):
+        if not has_room(pool, queue, _NEIGHBOURS):
+            return int(bucket)
         item = pop(pool, queue, bucket)
         if item < 0:
             bucket += 1
@@ -145,7 +158,6 @@ def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
         if closed[index]:
             continue
         closed[index] = 1
-        pool = reserve(pool, queue, 8)
         g_straight = field[index] + straight[cost[index]]
         g_diagonal = field[index] + diagonal[cost[index]]
         for k in range(8):
@@ -159,6 +171,7 @@ def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
             closed[reached] = 0
             item = ((row + rows[k]) << 16) | (column + columns[k])
             push(pool, queue, g >> shift, item)
+    return -1
 
 
 @kernel(allocates=False, forceinline=True)
