@@ -46,6 +46,15 @@ describe("the robot", () => {
     expect(robot.baseIn("odom")?.translation).toEqual([7, 0, 0]);
   });
 
+  it("follows its odometry after a seek, too", () => {
+    connection.addTopic("/odom", "nav_msgs/msg/Odometry");
+    connection.send("/odom", odometry(2));
+    connection.emit("reset", { topics: "all" });
+    expect(robot.motion).toBeNull();
+    connection.send("/odom", odometry(5));
+    expect(robot.placeOfMotion()?.x).toBe(5);
+  });
+
   it("has the goal of any node, without a planner's status", () => {
     connection.send("/goal_point", { header: { frame_id: "map" }, point: { x: 1, y: 2, z: 0 } });
     expect(robot.goal).toEqual({ frame: "map", x: 1, y: 2, yaw: null });

@@ -17,6 +17,7 @@ from navette.bags.play import (
 )
 from navette.bags.play.playhead import Playhead
 from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
+from navette.msgs.geometry_msgs.msg import TransformStamped
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.tf2_msgs.msg import TFMessage
 
@@ -289,6 +290,33 @@ def test_all_static_transforms_are_published_without_recorded_qos() -> None:
     jump = player.pop_jump()
     assert jump is not None
     assert [m.stamp_ns / S for m in jump.latched] == [0.0, 0.1, 0.2, 300.0]
+
+
+def placing(child: str) -> TFMessage:
+    return TFMessage(transforms=[TransformStamped(child_frame_id=child)])
+
+
+def test_a_seek_while_paused_returns_the_last_messages_and_transforms() -> None:
+    tf = topic_of("/tf", TFMessage)
+    frames = {5.0: "wheel", 8.5: "odom", 9.0: "base", 9.5: "base", 11.0: "base"}
+    of = MemorySource(
+        [recorded(tf, s, placing(child)) for s, child in frames.items()]
+        + [recorded(CHATTER, s, String(data=f"{s}")) for s in (8.0, 9.0, 9.9, 10.5)]
+        + [recorded(OTHER, s, String(data=f"other {s}")) for s in (7.0, 20.0)]
+        + [recorded(MAP, 0.0, String(data="map"))]
+    )
+    player = started(of, paused=True)
+    player.seek(NOW, 10 * S)
+    jump = player.pop_jump()
+    assert jump is not None
+    assert [text(m) for m in jump.latched] == ["map"]
+    seen = [(m.topic.name, m.stamp_ns / S) for m in jump.recent]
+    assert seen == [("/tf", 8.5), ("/tf", 9.5), ("/chatter", 9.9)]
+    player.resume(NOW)
+    player.seek(NOW, 10 * S)
+    jump = player.pop_jump()
+    assert jump is not None
+    assert jump.recent == ()
 
 
 # -- time --------------------------------------------------------------------------

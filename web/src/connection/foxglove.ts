@@ -85,7 +85,10 @@ export class FoxgloveConnection implements Connection {
       text: (operation, document) => this.#onOwnText(operation, document),
       playback: (frame) => {
         this.#playback.take(frame);
-        if (frame.didSeek) this.#reset();
+        if (frame.didSeek) {
+          this.#time.clear();
+          this.#reset();
+        }
         this.#time.take(frame.positionNs, performance.now());
         this.#later("playback", () => this.#playback.state);
       },

@@ -232,8 +232,6 @@ export class RobotState {
     if (topics !== "all") return;
     this.#goal = this.#sent = this.motion = this.baseFrame = null;
     this.contacts = 0;
-    this.#odometry?.end();
-    this.#odometry = null;
     this.#notify();
   }
 

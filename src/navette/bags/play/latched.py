@@ -1,13 +1,16 @@
-"""The latched messages at a position of a recording."""
+"""The last messages before a position of a recording."""
 
 from collections import defaultdict, deque
 
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.play.source import Source
+from navette.msgs import deserialize
+from navette.msgs.tf2_msgs.msg import TFMessage
 
 _FIRST_WINDOW_NS = 10_000_000_000
 _WIDER = 8
 _MOST = 1000
+_RECENT_NS = 2_000_000_000
 _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 
 
@@ -51,6 +54,32 @@ def latched_before(
         end_ns, window_ns = start_ns - 1, window_ns * _WIDER
     every = [message for messages in found.values() for message in messages]
     return sorted(every, key=lambda message: message.stamp_ns)
+
+
+def recent_before(
+    source: Source, topics: tuple[BagTopic, ...], stamp_ns: int
+) -> list[BagMessage]:
+    """Return the last message of each topic that is not latched, by stamp.
+
+    Only of the last two seconds: older values are no state of that moment. Of
+    transforms, each message has some of the frames: the last of each such set.
+    """
+    others = {topic for topic in topics if not is_latched(topic)}
+    found = _by_topic(source, others, stamp_ns - _RECENT_NS, stamp_ns - 1)
+    last = {
+        (topic, _child_frames(message)): message
+        for topic, messages in found.items()
+        for message in messages
+    }
+    return sorted(last.values(), key=lambda message: message.stamp_ns)
+
+
+def _child_frames(message: BagMessage) -> frozenset[str]:
+    """Return the frames that a message of transforms places; empty for others."""
+    if message.topic.type_name != _TRANSFORMS:
+        return frozenset()
+    transforms = deserialize(message.data, TFMessage).transforms
+    return frozenset(transform.child_frame_id for transform in transforms)
 
 
 def _by_topic(

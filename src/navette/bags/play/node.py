@@ -202,12 +202,12 @@ class PlayerNode(Node):
         player.set_rate(now_ns, rate)
         if seek_ns is None and play and player.state is PlayState.ENDED:
             seek_ns = player.begin_ns
-        if seek_ns is not None:
-            player.seek(now_ns, seek_ns)
         if play:
             player.resume(now_ns)
         else:
             player.pause(now_ns)
+        if seek_ns is not None:
+            player.seek(now_ns, seek_ns)
         self._changed(jumped=seek_ns is not None)
 
     def stop(self) -> None:
@@ -267,12 +267,12 @@ class PlayerNode(Node):
             self.on_end()
 
     def _jump(self) -> bool:
-        """Publish time and latched messages after a start, loop or seek."""
+        """Publish time and the last messages after a start, loop or seek."""
         jump = self.player.pop_jump()
         if jump is None:
             return False
         self._publish_clock()
-        for message in jump.latched:
+        for message in (*jump.latched, *jump.recent):
             self._say(message)
         return True
 

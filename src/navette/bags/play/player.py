@@ -10,7 +10,7 @@ from enum import Enum
 
 from navette.bags.bag import BagMessage
 from navette.bags.play.feed import DirectFeed, Feed, MakeFeed
-from navette.bags.play.latched import latched_before
+from navette.bags.play.latched import latched_before, recent_before
 from navette.bags.play.options import PlayOptions
 from navette.bags.play.playhead import Playhead
 from navette.bags.play.source import Source
@@ -37,6 +37,11 @@ class Jump:
     to_ns: int
     latched: tuple[BagMessage, ...]
     """Latched messages at that position, oldest first."""
+    recent: tuple[BagMessage, ...]
+    """While paused: the last messages of the other topics, oldest first.
+
+    A view shows that moment, although nothing is played.
+    """
 
 
 class Player:
@@ -97,10 +102,11 @@ class Player:
     # -- playing ---------------------------------------------------------------
 
     def start(self, now_ns: int) -> None:
-        self._go_to(now_ns, self.begin_ns)
+        moves = not self.options.paused
+        self._go_to(now_ns, self.begin_ns, moves=moves)
         self.passes += 1
         self._ended = False
-        self._head.moves = not self.options.paused
+        self._head.moves = moves
 
     def take(self, now_ns: int) -> BagMessage | None:
         """Return the next message if it is due.
@@ -151,7 +157,7 @@ class Player:
     def seek(self, now_ns: int, bag_ns: int) -> int:
         """Seek to the nearest position that is played; return it."""
         place_ns = max(self.begin_ns, min(self.end_ns, bag_ns))
-        self._go_to(now_ns, place_ns)
+        self._go_to(now_ns, place_ns, moves=self._head.moves)
         self._ended = False
         return place_ns
 
@@ -175,14 +181,15 @@ class Player:
             self._head.place(now_ns, self.end_ns)
             self._ended = True
             return
-        self._go_to(now_ns, self.begin_ns)
+        self._go_to(now_ns, self.begin_ns, moves=True)
         self.passes += 1
 
-    def _go_to(self, now_ns: int, bag_ns: int) -> None:
+    def _go_to(self, now_ns: int, bag_ns: int, *, moves: bool) -> None:
         self._close_feed()
         self._head.place(now_ns, bag_ns)
         latched = latched_before(self._source, self.topics, bag_ns)
-        self._jump = Jump(bag_ns, tuple(latched))
+        recent = () if moves else recent_before(self._source, self.topics, bag_ns)
+        self._jump = Jump(bag_ns, tuple(latched), tuple(recent))
         messages = self._source.messages(
             self.names, start_ns=bag_ns, end_ns=self.end_ns
         )
