@@ -61,7 +61,7 @@ def recent_before(
 ) -> list[BagMessage]:
     """Return the last message of each topic that is not latched, by stamp.
 
-    Only of the last two seconds: older values are no state of that moment. Of
+    Only of the last two seconds: older values say little about that moment. Of
     transforms, each message has some of the frames: the last of each such set.
     """
     others = {topic for topic in topics if not is_latched(topic)}
