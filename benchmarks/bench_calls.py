@@ -4,7 +4,7 @@
 
 The programs below use rclpy only, so that the same file runs on ROS 2. Limits are what
 rclpy 7.1.3 (Jazzy, CycloneDDS) needed on one machine with two cores, medians except
-where the line says p99; that machine is not this one.
+or p99 where stated; that machine is not this one.
 """
 
 import json
