@@ -46,6 +46,14 @@ def test_a_carried_robot_is_lost_until_it_is_back(tmp_path: Path) -> None:
     assert found.final_m < 0.15
 
 
+def test_a_room_that_looks_like_the_mapped_one_is_not_claimed(tmp_path: Path) -> None:
+    """The other room is this one turned by 180°, except for its furniture."""
+    found = drive(tmp_path, carry(Pose2(4.5, -3.0, 1.0)), localization="slam")
+    assert found.localization == ["localized", "lost"]
+    assert (found.result, found.contacts) != ("reached", 0)
+    assert found.contacts == 0
+
+
 def test_the_map_of_an_office_with_loops_is_exact() -> None:
     office = make_large_office(1, seed=2)
     options = RunOptions(

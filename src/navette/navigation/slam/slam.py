@@ -35,6 +35,8 @@ _START = np.diag([1e-6, 1e-6, 1e-6])
 _PLACED = np.diag([0.3**2, 0.3**2, 0.2**2])
 # What the errors that the scans of a local map share add to a match.
 _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
+# What a contradicting point takes from the evidence of matching ones.
+_CONTRADICTING = 3.0
 # What another motion must gain where the odometry is doubted.
 _GAIN = 0.15
 # Standard deviation of a predicted motion beyond which it replaces no odometry, m.
@@ -103,6 +105,7 @@ class Slam:
         self._is_located = False
         # Whether the newest scan contradicts the map where the robot should be.
         self._is_contradicted = False
+        self._contradicted = 0.0  # share of its points
         # A map of what the robot has seen since its place is unknown.
         self._scout: Slam | None = None
         self._finder = LoopFinder(params)
@@ -246,6 +249,8 @@ class Slam:
         else:
             start = self._start = self._start @ motion.pose
         matched = None if start is None else self._placed(key, start)
+        if self._start is None and self._is_claimed_too_early(matched):
+            matched = None
         if matched is None:
             self._count_unmatched()
             if self.unmatched_in_a_row >= self.params.lost_scans:
@@ -287,6 +292,16 @@ class Slam:
         if matched is None or matched.overlap < DOUBTFUL:
             return None
         return matched
+
+    def _is_claimed_too_early(self, matched: Refined | None) -> bool:
+        """Whether a place that a search found may be another one that is not mapped.
+
+        What the map does not explain may be new. What contradicts it, too, but then
+        all other points have to fit, or the robot has to see more.
+        """
+        if matched is None:
+            return False
+        return matched.overlap - _CONTRADICTING * self._contradicted < DOUBTFUL
 
     def _join(self, key: KeyScan, matched: Refined) -> None:
         """Connect the first key scan of a session to the known map."""
@@ -341,6 +356,7 @@ class Slam:
         pose = prior.pose if found is None else found.pose
         placed = SensorView(key.scan, key.base_T_sensor)
         share = self._local.contradiction(placed, key.points, pose)
+        self._contradicted = share
         self._is_contradicted = share > self.params.max_contradicted
         return None if self._is_contradicted else found
 

@@ -83,6 +83,20 @@ def test_a_robot_carried_to_an_unmapped_room_is_lost_until_it_is_back(
     assert len(slam.graph) > keys
 
 
+def test_an_unmapped_room_that_looks_like_the_mapped_one_is_not_claimed() -> None:
+    """Its walls fit, its furniture stands elsewhere."""
+    twin = [*box(20.0, 0.0, 6.0, 5.0), *box(23.5, 0.3, 0.9, 0.7)]
+    walls = np.array([*ROOM, *twin])
+    robot = Robot(walls, Pose2(1.5, 1.5, 0.2))
+    slam = Slam(SlamParams(), robot.pose)
+    robot.drive(slam, [HERE, *AROUND])
+    for place in (Pose2(22.0, 2.5, 1.0), Pose2(24.5, 3.5, -2.5), Pose2(21.0, 2.0, 0.3)):
+        robot.pose = place
+        assert not any(robot.drive(slam, [HERE] * 40)[30:])
+    robot.pose = Pose2(2.0, 2.0, -1.0)
+    assert all(robot.drive(slam, [*[HERE] * 10, *turned(0.8), *ahead(0.8)])[-8:])
+
+
 def test_a_robot_carried_within_its_map_is_found() -> None:
     robot = Robot(ROOMS, Pose2(1.5, 1.5, 0.2))
     slam = Slam(SlamParams(), robot.pose)
