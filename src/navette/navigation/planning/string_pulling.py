@@ -78,7 +78,7 @@ def _checked(
     return np.ascontiguousarray(cost), line
 
 
-@kernel
+@kernel(allocates=False)
 def _line_cost(cost: Any, line: Any, factor: Any) -> float:
     total = 0.0
     for i in range(line.shape[0] - 1):
@@ -100,7 +100,7 @@ def _cut(line: Points) -> Points:
     return np.concatenate([fine, line[-1:]])
 
 
-@kernel
+@kernel(allocates=False)
 def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
     """Fill ``kept`` with as few of the points as possible; return their number.
 
@@ -141,7 +141,7 @@ def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
     return good
 
 
-@kernel
+@kernel(allocates=False)
 def _shorter(
     cost: Any, fine: Any, paid: Any, anchor: int, reached: int, factor: Any
 ) -> bool:
@@ -156,10 +156,10 @@ def _shorter(
     return bool(straight <= (paid[reached] - paid[anchor]) * (1.0 + 1e-9))
 
 
-@kernel
+@kernel(allocates=False)
 def _segment_cost(
     cost: Any, u0: float, v0: float, u1: float, v1: float, factor: Any
-) -> Any:
+) -> float:
     """Integrate the factor along a segment (Amanatides and Woo 1987); inf = closed.
 
     A segment through a corner needs both cells beside the corner free.
@@ -174,12 +174,12 @@ def _segment_cost(
     next_v = per_v * (row + (dv > 0) - v0) * step_v if dv != 0.0 else np.inf
     total, t = 0.0, 0.0
     while True:
-        each = factor[cost[row, column]]
+        each = factor[cost[np.uint64(row), np.uint64(column)]]
         if each == 0.0:
             return np.inf
         until = next_u if next_u < next_v else next_v
         if until >= 1.0:
-            return total + (1.0 - t) * length * each
+            return float(total + (1.0 - t) * length * each)
         total += (until - t) * length * each
         t = until
         if abs(next_u - next_v) * length < 1e-9:
