@@ -13,7 +13,7 @@ import { pick } from "../src/scene/picking";
 import { placeOf, rgba } from "../src/scene/primitives";
 import { unionOf, Viewing } from "../src/scene/viewing";
 import { Theme } from "../src/theme/theme";
-import { fromYaw, IDENTITY, yawOf } from "../src/transforms/transform";
+import { apply, fromYaw, IDENTITY, yawOf } from "../src/transforms/transform";
 import { TransformTree } from "../src/transforms/transform_tree";
 import { FakeConnection } from "./fake_connection";
 
@@ -70,6 +70,33 @@ describe("displays", () => {
     expect(display("/lidar").status()).toEqual({ level: "ok", text: "2 of 3 rays hit" });
     connection.topics.set("/lidar", { ...connection.topics.get("/lidar")!, type: "std_msgs/msg/String" });
     expect(display("/lidar").status().text).toBe("wrong type: std_msgs/msg/String");
+  });
+
+  it("keep the driven path where it was seen, whatever the map corrects later", () => {
+    const correct = (seconds: number, y: number): void =>
+      transforms.set({ parent: "map", child: "odom", parent_T_child: { translation: [0, y, 0], rotation: fromYaw(0) }, stampNs: BigInt(seconds) * 1_000_000_000n, source: "tf" });
+    const drive = (seconds: number, x: number): void => {
+      const twist = { twist: { linear: { x: 0, y: 0, z: 0 }, angular: { x: 0, y: 0, z: 0 } } };
+      const moved = { pose: { ...pose, position: { x, y: 0, z: 0 } }, covariance: [] };
+      connection.send("/odom", { header: { frame_id: "odom", stamp: { sec: seconds, nanosec: 0 } }, pose: moved, twist });
+    };
+    const trail = (): number[][] => display("/odom").parts().flatMap((part) => part.primitives.flatMap((each) => {
+      if (each.kind !== "lines" || each.mode !== "strip") return [];
+      const place = placeOf(part, "map", transforms)!;
+      return Array.from({ length: each.positions.length / 3 }, (_, index) => apply(place, [each.positions[3 * index]!, each.positions[3 * index + 1]!, 0]).slice(0, 2));
+    }));
+    connection.addTopic("/odom", "nav_msgs/msg/Odometry");
+    correct(1, 0);
+    drive(1, 0);
+    drive(2, 0.5);
+    correct(3, 0.4);
+    drive(3, 1);
+    const expected = [[0, 0], [0.5, 0], [1, 0.4]];
+    trail().forEach(([x, y], index) => {
+      expect(x).toBeCloseTo(expected[index]![0]!);
+      expect(y).toBeCloseTo(expected[index]![1]!);
+    });
+    expect(trail()).toHaveLength(3);
   });
 
   describe("of a robot that turns", () => {

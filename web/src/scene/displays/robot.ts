@@ -2,47 +2,77 @@
 
 import { Display } from "../display";
 import { transformOf, valuesOf, type DiagnosticStatus, type Odometry } from "../messages";
+import { Placement } from "../placement";
 import { faded, type Part, type Primitive } from "../primitives";
-import { IDENTITY, yawOf, type Transform } from "../../transforms/transform";
+import { nanosecondsOf } from "../../transforms/stamp";
+import { apply, IDENTITY, yawOf, type Transform, type Vector } from "../../transforms/transform";
 import { covarianceEllipse } from "./poses";
 
 const APART_M = 0.05;
 const JUMP_M = 2;
 const MOST_POINTS = 20_000;
 
-/** nav_msgs/Odometry: the driven path, the newest pose, its covariance. */
+/**
+ * nav_msgs/Odometry: the driven path, the newest pose, its covariance.
+ *
+ * Each point of the path is placed once, by the transforms of its stamp, as in RViz: a later
+ * correction of the map's odometry does not move what was driven before.
+ */
 export class OdometryDisplay extends Display<Odometry> {
-  readonly #trail: number[] = [];
+  /** In #trailFrame. */
+  #trail: number[] = [];
+  #trailFrame = "";
+  /** The newest point, in the frame of the messages. */
+  #last: Vector | null = null;
   #frame = "";
 
   protected override take(value: Odometry): void {
     this.message = value;
-    if (value.header.frame_id !== this.#frame) this.#trail.length = 0;
-    this.#frame = value.header.frame_id;
+    const { frame_id: frame, stamp } = value.header;
     const { x, y, z } = value.pose.pose.position;
-    const [lx, ly] = this.#trail.slice(-3);
-    const apart = lx === undefined || ly === undefined ? Infinity : Math.hypot(x - lx, y - ly);
-    if (apart > JUMP_M) this.#trail.length = 0; // another run
-    if (apart > APART_M) this.#trail.push(x, y, z);
+    const apart = this.#last === null ? Infinity : Math.hypot(x - this.#last[0], y - this.#last[1]);
+    if (frame !== this.#frame || apart > JUMP_M) this.#trail = []; // another run
+    this.#frame = frame;
+    if (!(apart > APART_M)) return;
+    this.#last = [x, y, z];
+    const { transforms, fixedFrame } = this.around;
+    const fixed_T_frame = fixedFrame === null ? null : new Placement(transforms, frame, nanosecondsOf(stamp)).in(fixedFrame);
+    this.#moveTrail(fixed_T_frame && fixedFrame !== null ? fixedFrame : frame);
+    this.#trail.push(...apply(fixed_T_frame ?? IDENTITY, this.#last));
     if (this.#trail.length > 3 * MOST_POINTS) this.#trail.splice(0, 3 * 1000);
   }
 
   override clear(): void {
-    this.#trail.length = 0;
+    this.#trail = [];
+    this.#last = null;
     super.clear();
   }
 
   protected override build(): Part[] {
     if (!this.message) return [];
-    const primitives: Primitive[] = [];
+    const newest: Primitive[] = [];
+    const trail: Primitive[] = [];
     const { pose, covariance } = this.message.pose;
     if (this.#trail.length > 3) {
       const positions = Float32Array.from(this.#trail);
-      primitives.push({ kind: "lines", positions, mode: "strip", colour: this.colour, widthPx: this.size });
+      trail.push({ kind: "lines", positions, mode: "strip", colour: this.colour, widthPx: this.size });
     }
     const ellipse = covarianceEllipse(covariance, transformOf(pose));
-    if (ellipse) primitives.push({ kind: "lines", positions: ellipse, mode: "loop", colour: this.colour, widthPx: 1, fill: faded(this.colour, 0.12) });
-    return [{ frame: this.#frame, primitives, about: () => this.#about() }];
+    if (ellipse) newest.push({ kind: "lines", positions: ellipse, mode: "loop", colour: this.colour, widthPx: 1, fill: faded(this.colour, 0.12) });
+    const about = (): [string, string][] => this.#about();
+    return [{ frame: this.#frame, primitives: newest, about }, { frame: this.#trailFrame, primitives: trail, about }];
+  }
+
+  /** Another fixed frame: take the trail there as it is seen now. */
+  #moveTrail(frame: string): void {
+    if (frame === this.#trailFrame) return;
+    const frame_T_trail = this.around.transforms.lookUp(frame, this.#trailFrame);
+    const moved: number[] = [];
+    for (let index = 0; frame_T_trail && index < this.#trail.length; index += 3) {
+      moved.push(...apply(frame_T_trail, [this.#trail[index]!, this.#trail[index + 1]!, this.#trail[index + 2]!]));
+    }
+    this.#trail = moved;
+    this.#trailFrame = frame;
   }
 
   #about(): [string, string][] {
