@@ -168,6 +168,8 @@ async function sizes() {
     await other.waitForTimeout(1500);
     seen.axe[name] = await serious(other);
     seen[name] = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]);
+    // The hint is there whole, or not at all.
+    if (await other.evaluate(() => { const { scrollHeight, clientHeight } = document.querySelector("#help"); return scrollHeight > clientHeight + 1; })) seen.problems.push(`${name}: the hint is cut off`);
     await picture(other, name);
     await other.context().close();
   }
