@@ -255,6 +255,20 @@ describe("displays", () => {
     expect(cell?.item.part.about?.(cell.primitive, cell.hit)).toContainEqual(["value", "100 (occupied)"]);
     expect(pick(items, above(0.75, 2.25)).some(({ primitive }) => primitive.kind === "raster")).toBe(false);
   });
+
+  it("find a body from the side where it is, and not a long wall beside the line of sight", () => {
+    const wall = { kind: "solid", shape: "box", pose: { translation: [0, -10, 0.5], rotation: fromYaw(0) }, size: [20, 0.3, 1], colour: "#000" } as const;
+    const crate = { kind: "solid", shape: "mesh", pose: { translation: [0, 2, 0], rotation: fromYaw(0) }, size: [1, 1, 1], colour: "#000", mesh: { positions: Float32Array.from([-1, -1, 0, 1, -1, 0, 1, 1, 1, -1, 1, 1]) } } as const;
+    const items = [{ part: { frame: "map", primitives: [wall, crate] }, fixed_T_part: IDENTITY, opacity: 1 }];
+    const towards = (y: number): Parameters<typeof pick>[1] => {
+      const length = Math.hypot(20 + y, 20);
+      return { origin: [0, -20, 20], direction: [0, (20 + y) / length, -20 / length], metresPerPx: 0.01 };
+    };
+    const found = (y: number): unknown[] => pick(items as never, towards(y)).map(({ primitive }) => primitive);
+    expect(found(2)).toEqual([crate]);
+    expect(found(-10)).toEqual([wall]);
+    expect(found(-4)).toEqual([]);
+  });
 });
 
 describe("geometry", () => {

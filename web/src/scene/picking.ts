@@ -1,10 +1,10 @@
 /** What lies under a line of sight: the same for both renderers. */
 
-import { apply, compose, inverse, rotate, type Transform, type Vector } from "../transforms/transform";
+import { apply, inverse, rotate, type Transform, type Vector } from "../transforms/transform";
 import { convexHull, isInside } from "./hull";
-import type { Hit, Primitive } from "./primitives";
+import type { Hit, Primitive, Solid } from "./primitives";
 import type { DrawItem, Ray } from "./renderer";
-import { cornersOf } from "./solids";
+import { boxAbout, cornersOf } from "./solids";
 
 const REACH_PX = 9;
 
@@ -64,17 +64,27 @@ function hitOf(primitive: Primitive, ray: Ray, pose: Transform, fixedRay: Ray): 
     case "label":
       return distance(primitive.position, ray) < 2 * reach ? { point: primitive.position, index: 0 } : null;
     case "solid": {
-      // From above exactly; from the side, its distance to the middle.
-      const centre = compose(pose, primitive.pose).translation;
-      const size = Math.max(...primitive.size) / 2;
+      // From above exactly; from the side, the box about it.
       const isAbove = Math.abs(fixedRay.direction[2]) > 0.999;
-      const hull = isAbove ? convexHull(cornersOf(primitive, pose)) : [];
-      const inside = isAbove
-        ? isInside(hull, [fixedRay.origin[0], fixedRay.origin[1]])
-        : primitive.shape !== "mesh" && distance(centre, fixedRay) < size;
+      const inside = isAbove ? isInside(convexHull(cornersOf(primitive, pose)), [fixedRay.origin[0], fixedRay.origin[1]]) : meetsBox(primitive, ray);
       return inside ? { point: primitive.pose.translation, index: 0 } : null;
     }
   }
+}
+
+/** Whether a ray in the frame of the part meets the box about a body: between its three pairs of planes at once. */
+function meetsBox(solid: Solid, ray: Ray): boolean {
+  const solid_T_part = inverse(solid.pose);
+  const origin = apply(solid_T_part, ray.origin);
+  const direction = rotate(solid_T_part.rotation, ray.direction);
+  const { low, high } = boxAbout(solid);
+  let [enter, leave] = [0, Infinity];
+  for (const axis of [0, 1, 2] as const) {
+    const [a, b] = [(low[axis] - origin[axis]) / direction[axis], (high[axis] - origin[axis]) / direction[axis]];
+    enter = Math.max(enter, Math.min(a, b));
+    leave = Math.min(leave, Math.max(a, b));
+  }
+  return enter <= leave;
 }
 
 /** Distance of a point to the line of sight. */

@@ -16,6 +16,19 @@ export function cornersOf(solid: Solid, fixed_T_part: Transform): [number, numbe
   });
 }
 
+/** Lowest and highest coordinates of a body, in its own frame. */
+export function boxAbout(solid: Solid): { low: Vector; high: Vector } {
+  const low: [number, number, number] = [Infinity, Infinity, Infinity];
+  const high: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+  for (const point of surface(solid)) {
+    for (const axis of [0, 1, 2] as const) {
+      low[axis] = Math.min(low[axis], point[axis]);
+      high[axis] = Math.max(high[axis], point[axis]);
+    }
+  }
+  return { low, high };
+}
+
 function surface({ shape, size: [sx, sy, sz], mesh }: Solid): Vector[] {
   const points: Vector[] = [];
   if (shape === "box") {
