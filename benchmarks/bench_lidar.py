@@ -16,8 +16,11 @@ from harness import Benchmark, optional
 
 from navette.sim import Scene, SimParams, World, load_robot, load_world
 from navette.sim.build import compile_scene
+from navette.sim.contacts import ContactMonitor
+from navette.sim.instant import Instant
 from navette.sim.lidar import Lidar
 from navette.sim.masks import SEEN, SEEN_SOLID
+from navette.sim.robot_state import RobotState
 from navette.sim.sensors import lidars_of
 from navette.sim.shape_table import ShapeTable
 
@@ -56,13 +59,16 @@ class Sensor:
         mujoco.mj_kinematics(self.model, self.data)
         own = next(lidars_of(compiled, params))
         sensor = replace(own.sensor, samples=beams, range_max=RANGE_MAX_M)
-        self.lidar = Lidar(sensor, own.mount, params, self.model)
+        self.lidar = Lidar(sensor, own.mount, params, compiled)
         self._shapes = ShapeTable(self.model, (SEEN_SOLID, SEEN))
+        state = RobotState(compiled.robot, self.data)
+        contacts = ContactMonitor(compiled, self.data)
+        self._now = Instant(self.model, self.data, state, 0, contacts)
         self._rng = np.random.default_rng(0)
         self.angles = np.linspace(sensor.angle_min, sensor.angle_max, beams)
 
     def with_navette(self) -> np.ndarray:
-        return self.lidar.scan(self.model, self.data, 0, self._rng).ranges
+        return self.lidar.read(self._now, self._rng).ranges
 
     def with_mujoco(self) -> np.ndarray:
         origin, rotation = self.lidar.mount.world(self.data)
