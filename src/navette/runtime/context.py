@@ -6,7 +6,7 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, ClassVar
 from weakref import WeakSet
 
 from navette.errors import FileFormatError, InvalidValueError
@@ -56,6 +56,8 @@ class Context(HasHandle):
             also the only run of this user; else the shared network.
     """
 
+    _has_exempted: ClassVar[bool] = False
+
     def __init__(
         self,
         *,
@@ -83,7 +85,7 @@ class Context(HasHandle):
         #: The executor of module-level ``spin``; created on demand.
         self.executor: Any = None
         self._initialized = False
-        self._exempts = False  # objects from garbage collection
+        self._exempts = False
         self._shut_down = False
         self._shut_down_by_program = False
         self._domain_id = 0
@@ -217,10 +219,11 @@ class Context(HasHandle):
 
         Called before the first event. Modules and nodes are needed as long as the
         context. Traversing them would take the collector 10 to 20 ms each time, in the
-        middle of a callback.
+        middle of a callback. Only the first context of a process does so: for a later
+        one, what earlier ones left would be kept, too.
         """
-        if not self._exempts:
-            self._exempts = True
+        if not Context._has_exempted:
+            Context._has_exempted = self._exempts = True
             gc.freeze()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:

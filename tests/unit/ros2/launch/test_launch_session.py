@@ -51,7 +51,7 @@ def spin(node_class):
     rclpy.init()
     node = node_class()
     try:
-        print("ready")
+        sys.stdout.write("ready\\n")  # at once: SIGINT may follow
         rclpy.spin(node)
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         print("interrupted")
