@@ -208,7 +208,7 @@ def test_a_program_that_raises_fails(workspace: Path, capsys: Any) -> None:
         RegisterEventHandler(OnProcessIO(
             on_stdout=lambda event: Node(
                 package="parlance", executable="broken", required=True)
-            if event.text == b"ready" else None)),
+            if event.text.strip() == b"ready" else None)),
         """,
     )
     assert launch(file, {}) == 1
