@@ -204,7 +204,7 @@ def _expand(
     column: int,
     g: int,
     best: int,
-) -> Any:
+) -> int:
     """Offer g + edge to the eight neighbours; return the goal's least g so far.
 
     Where the heuristic falls by more than a step costs, the bound of the cell that is
@@ -247,7 +247,7 @@ def _expand(
 
 
 @kernel(allocates=False, forceinline=True)
-def _to_goal(query: Any, row: Any, column: Any) -> Any:
+def _to_goal(query: Any, row: int, column: int) -> int:
     """Return the least cost from a cell of the rimmed grid to the goal.
 
     A path leaves the tile of the cell towards a cheap one, and ends at the goal behind
@@ -262,11 +262,11 @@ def _to_goal(query: Any, row: Any, column: Any) -> Any:
         np.uint64(query.goal_row - 1) // tile, np.uint64(query.goal_column - 1) // tile
     ]
     apart = min(least, here + there)
-    return least + apart * query.excess // 10_000
+    return least + int(apart * query.excess // 10_000)
 
 
 @kernel(allocates=False, forceinline=True)
-def _octile(rows: Any, columns: Any) -> Any:
+def _octile(rows: int, columns: int) -> int:
     """Return the least cost over free cells: the heuristic."""
     rows = rows if rows >= 0 else -rows
     columns = columns if columns >= 0 else -columns

@@ -88,16 +88,16 @@ def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
 
 
 @kernel(allocates=False, forceinline=True)
-def pop(pool: Any, queue: Any, bucket: int) -> Any:
+def pop(pool: Any, queue: Any, bucket: int) -> int:
     """Remove and return the newest item of the bucket, or −1 if it is empty."""
     heads, state = queue.heads, queue.state
     at = np.uint64(bucket & (heads.size - 1))
     slot = heads[at]
     if slot == 0:
-        return np.int64(-1)
+        return -1
     entry = pool[np.uint64(slot)]
     heads[at] = entry & _NEXT
     pool[np.uint64(slot)] = state[FREE]
     state[FREE] = slot
     state[WAITING] -= 1
-    return entry >> 32
+    return int(entry >> 32)
