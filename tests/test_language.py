@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from navette.bags.params import RecorderParams
-from navette.gym.params import NavigationEnvParams
+from navette.navigation.gym.params import NavigationEnvParams
 from navette.navigation.stack.stack import NODE_CLASSES
 from navette.params import Params, info_of, unit_of
 from navette.viewer.params import ViewerParams

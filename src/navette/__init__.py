@@ -62,7 +62,9 @@ def register_environment(gymnasium: Any) -> None:
     """Register the environment for learning by its name; it is loaded when made."""
     name = "navette/Navigation-v0"
     if name not in gymnasium.registry:
-        gymnasium.register(name, entry_point="navette.gym.environment:NavigationEnv")
+        gymnasium.register(
+            name, entry_point="navette.navigation.gym.environment:NavigationEnv"
+        )
 
 
 if hasattr(sys.modules.get("gymnasium"), "register"):  # was imported before

@@ -17,7 +17,7 @@ from navette.msgs import (
 )
 from navette.msgs.interface import MessageSpec, short_name
 from navette.msgs.registry import DEFINITIONS, get_message_spec
-from navette.testing.messages import random_message
+from navette.runtime.testing.messages import random_message
 
 # mcap-ros2-support has no wstring, and reads a char as text, not as a byte.
 FAULTS = ("wstring", "char")

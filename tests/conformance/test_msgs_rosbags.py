@@ -17,7 +17,7 @@ from navette.msgs import (
     type_hash,
 )
 from navette.msgs.interface import PLACEHOLDER, Field
-from navette.testing.messages import random_message
+from navette.runtime.testing.messages import random_message
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 NOT_OURS = ("rmw_dds_common", "rosbag2_interfaces")

@@ -24,9 +24,9 @@ from navette.runtime import (
     QoSProfile,
     ns_to_stamp,
 )
+from navette.runtime.testing import GraphHarness
 from navette.sim import World, load_robot
 from navette.sim.node import SimNode
-from navette.testing import GraphHarness
 
 _LATCHED = DurabilityPolicy.TRANSIENT_LOCAL
 _EKF_INPUTS = {

@@ -19,7 +19,7 @@ from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.runtime import Node, VirtualClock, ns_to_stamp
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 S = 1_000_000_000
 _START_NS = 1_700_000_000 * S

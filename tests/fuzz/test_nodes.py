@@ -16,8 +16,8 @@ from fuzz.subjects import SUBJECTS, Feed, Subject, running, stamped, valid_messa
 from navette.msgs import Message, serialize
 from navette.msgs.rcl_interfaces.srv import SetParameters
 from navette.runtime import Node, Parameter, VirtualClock
+from navette.runtime.testing import GraphHarness
 from navette.sim.run_control import RunControl
-from navette.testing import GraphHarness
 
 pytestmark = pytest.mark.long
 

@@ -20,8 +20,8 @@ from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.stack import NavigationStack
 from navette.runtime.input_check import input_check
+from navette.runtime.testing import GraphHarness, Probe
 from navette.sim.node import SimNode
-from navette.testing import GraphHarness, Probe
 
 GOAL = (-3.0, -7.0)
 _RELAYED = ("/lidar", "/odom/filtered", "/tf", "/tf_static")

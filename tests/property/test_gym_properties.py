@@ -12,8 +12,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from navette.geometry import Pose2
-from navette.gym import Observer
-from navette.gym.route import FreeSpace, Route
+from navette.navigation.gym import Observer
+from navette.navigation.gym.route import FreeSpace, Route
 
 Cells = NDArray[Any]
 

@@ -18,7 +18,7 @@ from navette.msgs import (
 )
 from navette.msgs.interface import MessageSpec
 from navette.msgs.registry import DEFINITIONS, KINDS, get_spec
-from navette.testing.messages import random_message
+from navette.runtime.testing.messages import random_message
 
 
 def message_names() -> list[str]:

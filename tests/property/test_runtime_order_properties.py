@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from navette.msgs.std_msgs.msg import Int64
 from navette.runtime import VirtualClock
 from navette.runtime.loop import EventLoop
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @given(st.lists(st.integers(0, 5), max_size=30))

@@ -29,8 +29,8 @@ from navette.ros2.packages.message_filters import (
     Subscriber,
 )
 from navette.runtime import Time, TransformListener, VirtualClock, ns_to_stamp
+from navette.runtime.testing import GraphHarness
 from navette.runtime.tf import Buffer
-from navette.testing import GraphHarness
 
 S = 1_000_000_000
 

@@ -19,7 +19,7 @@ from navette.runtime.qos import (
     QoSProfile,
     qos_profile_sensor_data,
 )
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 SECOND = 1_000_000_000
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)

@@ -15,7 +15,7 @@ from navette.msgs.rosbag2_interfaces import srv
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import PacedClock, stamp_to_ns
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 CHATTER = topic_of("/chatter", String)
 MAP = topic_of("/map", String, LATCHED)

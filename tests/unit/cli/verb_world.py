@@ -13,7 +13,7 @@ from navette.cli.app import app
 from navette.cli.arguments import spread_lists
 from navette.cli.session import connect
 from navette.errors import NavetteError
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 _JOINING = (
     "action.send_goal",

@@ -21,7 +21,7 @@ from navette.msgs.geometry_msgs.msg import Point, Twist, Vector3
 from navette.msgs.sensor_msgs.msg import JointState, LaserScan
 from navette.msgs.std_msgs.msg import ColorRGBA
 from navette.msgs.visualization_msgs.msg import Marker
-from navette.testing.messages import random_message
+from navette.runtime.testing.messages import random_message
 
 MESSAGES = [
     f"{package}/msg/{name}"

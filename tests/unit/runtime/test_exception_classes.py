@@ -11,7 +11,7 @@ from navette.runtime.exceptions import (
     InvalidParameterTypeException,
     RCLError,
 )
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def test_an_override_of_another_type(graph: GraphHarness) -> None:

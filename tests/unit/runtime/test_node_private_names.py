@@ -2,7 +2,7 @@
 
 from navette.runtime import Node
 from navette.runtime.lifecycle import LifecycleNode
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 #: Names of rclpy's Node, which derived classes avoid on ROS 2 as well.
 _OF_RCLPY = {

@@ -34,8 +34,8 @@ from navette.runtime.action import (
 from navette.runtime.action.goal_states import next_status
 from navette.runtime.action.server import ServerGoalHandle
 from navette.runtime.exceptions import RCLError, ROSInterruptException
+from navette.runtime.testing import GraphHarness
 from navette.runtime.type_support import NoTypeSupportImportedException
-from navette.testing import GraphHarness
 
 S = GoalStatus
 

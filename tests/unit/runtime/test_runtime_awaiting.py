@@ -17,7 +17,7 @@ from navette.runtime import (
     ReentrantCallbackGroup,
 )
 from navette.runtime.action import ActionClient, ActionServer
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def add(request: Any, response: Any) -> Any:

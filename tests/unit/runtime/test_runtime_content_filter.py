@@ -14,7 +14,7 @@ from navette.runtime import Node, QoSProfile
 from navette.runtime.exceptions import RCLError
 from navette.runtime.filter_expression import ContentFilterError, compile_filter
 from navette.runtime.subscription import ContentFilterOptions
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 POINT = PointStamped()
 POINT.header.frame_id = "map"

@@ -8,7 +8,7 @@ from navette.msgs import serialize
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import DurabilityPolicy, QoSProfile
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 LATCHED = QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

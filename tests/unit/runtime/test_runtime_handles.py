@@ -9,8 +9,8 @@ from navette.msgs.std_msgs.msg import String
 from navette.runtime import Context, Node, QoSProfile
 from navette.runtime.guard_condition import GuardCondition
 from navette.runtime.poll_set import PollSet
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import Duration
-from navette.testing import GraphHarness
 
 
 def poll_set(context: Context) -> PollSet:

@@ -24,7 +24,7 @@ from navette.runtime.lifecycle import (
     TransitionCallbackReturn,
 )
 from navette.runtime.lifecycle.state_machine import TRANSITIONS
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 SUCCESS = TransitionCallbackReturn.SUCCESS
 FAILURE = TransitionCallbackReturn.FAILURE

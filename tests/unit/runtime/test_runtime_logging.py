@@ -14,7 +14,7 @@ from navette.runtime.log import Logger, LogHub, LogRecord
 from navette.runtime.log_levels import severity_from_string
 from navette.runtime.log_sinks import ConsoleSink, FileSink, format_record
 from navette.runtime.loop import EventLoop
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 class Hub(LogHub):

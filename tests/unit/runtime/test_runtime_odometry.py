@@ -9,9 +9,9 @@ from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime import Node, ns_to_stamp
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.testing import GraphHarness
 from navette.runtime.tf import StaticTransformBroadcaster, TransformBroadcaster
 from navette.runtime.tf.conversions import transform_stamped
-from navette.testing import GraphHarness
 
 S = 1_000_000_000
 

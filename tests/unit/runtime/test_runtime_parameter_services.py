@@ -28,7 +28,7 @@ from navette.runtime.parameter import (
 )
 from navette.runtime.parameter_client import AsyncParameterClient
 from navette.runtime.parameter_event_handler import ParameterEventHandler
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 T = Parameter.Type
 Ask = Callable[[Future[Any]], Any]

@@ -21,7 +21,7 @@ from navette.runtime.exceptions import (
     ParameterUninitializedException,
 )
 from navette.runtime.parameter import parameter_value_to_python
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 T = Parameter.Type
 

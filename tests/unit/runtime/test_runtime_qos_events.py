@@ -37,7 +37,7 @@ from navette.runtime.qos_overriding_options import (
     QosCallbackResult,
     QoSOverridingOptions,
 )
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 Changed = QoSLivelinessChangedInfo
 

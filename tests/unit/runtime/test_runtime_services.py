@@ -29,13 +29,13 @@ from navette.runtime.exceptions import (
     ServiceFailedError,
 )
 from navette.runtime.service_introspection import ServiceIntrospectionState
+from navette.runtime.testing import GraphHarness
 from navette.runtime.type_support import (
     NoTypeSupportImportedException,
     check_for_type_support,
     check_is_valid_msg_type,
     check_is_valid_srv_type,
 )
-from navette.testing import GraphHarness
 
 
 def add(request: Any, response: Any) -> Any:

@@ -18,7 +18,7 @@ from navette.runtime import (
     status_output,
 )
 from navette.runtime.stage.params import declare_params
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Input, StageNode
 from navette.runtime.input_check import SharedInputChecks, input_check
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 class Listener(StageNode):

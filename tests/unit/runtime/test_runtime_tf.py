@@ -28,6 +28,7 @@ from navette.runtime import (
     TransformBroadcaster,
     TransformListener,
 )
+from navette.runtime.testing import GraphHarness
 from navette.runtime.tf import (
     ConnectivityException,
     ExtrapolationException,
@@ -36,7 +37,6 @@ from navette.runtime.tf import (
 )
 from navette.runtime.tf.buffer_core import BufferCore
 from navette.runtime.tf.conversions import transform_stamped
-from navette.testing import GraphHarness
 
 S = 1_000_000_000
 

@@ -23,7 +23,7 @@ from navette.runtime import (
 )
 from navette.runtime.clock import Wakeup
 from navette.runtime.exceptions import NotInitializedException
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 S = 1_000_000_000
 

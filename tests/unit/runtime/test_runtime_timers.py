@@ -4,8 +4,8 @@ import pytest
 
 from navette.errors import CallbackError, InvalidValueError
 from navette.runtime import ROSInterruptException
+from navette.runtime.testing import GraphHarness
 from navette.runtime.timer import TimerInfo
-from navette.testing import GraphHarness
 
 S = 1_000_000_000
 

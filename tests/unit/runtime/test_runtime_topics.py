@@ -26,7 +26,7 @@ from navette.runtime.qos_events import (
     QoSMatchedInfo,
     SubscriptionEventCallbacks,
 )
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def test_talker_and_listener() -> None:

@@ -12,7 +12,7 @@ from navette.msgs.type_description_interfaces.msg import FieldType
 from navette.msgs.type_description_interfaces.srv import GetTypeDescription
 from navette.runtime import Node, Parameter
 from navette.runtime.parameter import ParameterType
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 Ask = Callable[..., Any]
 

@@ -23,10 +23,10 @@ from navette.runtime.exceptions import InvalidParameterException
 from navette.runtime.guard_condition import GuardCondition
 from navette.runtime.names import topic_or_service_is_hidden
 from navette.runtime.parameter import validate_parameter_name
+from navette.runtime.testing import GraphHarness
 from navette.runtime.wait_for_message import wait_for_message
 from navette.runtime.wait_set import NumberOfEntities, WaitSet
 from navette.runtime.waitable import Waitable
-from navette.testing import GraphHarness
 
 
 def test_guard_condition(graph: GraphHarness) -> None:

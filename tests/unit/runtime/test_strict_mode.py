@@ -10,7 +10,7 @@ from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import Future, Node
 from navette.runtime.exceptions import InvalidTopicNameException
 from navette.runtime.strict_mode import VARIABLE, DeadlockError, check_wait
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @pytest.fixture(params=["0", "1"])

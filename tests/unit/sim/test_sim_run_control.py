@@ -24,9 +24,9 @@ from navette.runtime import (
     SystemClock,
     VirtualClock,
 )
+from navette.runtime.testing import GraphHarness
 from navette.sim import Scene, load_robot, load_world
 from navette.sim.node import SimNode
-from navette.testing import GraphHarness
 
 MS = 10**6
 PLAYING, PAUSED = SimulationState.STATE_PLAYING, SimulationState.STATE_PAUSED

@@ -10,7 +10,7 @@ from navette.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.runtime import Parameter
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def twist(speed: float = 0.0, turn: float = 0.0) -> Twist:

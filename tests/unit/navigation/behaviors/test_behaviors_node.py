@@ -25,8 +25,8 @@ from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.navigation.stack.robot import simulate_robot
 from navette.runtime import Parameter
+from navette.runtime.testing import GraphHarness
 from navette.sim import World
-from navette.testing import GraphHarness
 
 FRONT_M = 0.254  # from the axle to the bumper
 

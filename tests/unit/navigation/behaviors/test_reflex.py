@@ -18,7 +18,7 @@ from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.behaviors.reflex import BumperReflex, ReflexParams
 from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.behaviors.reflex.reflex import NO_CONTACT, Contacts
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 STEP_NS = 50_000_000
 PARAMS = ReflexParams(backoff_m=0.2, speed_mps=0.1, stop_s=0.2)

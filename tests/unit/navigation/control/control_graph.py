@@ -11,8 +11,8 @@ from navette.msgs.geometry_msgs.msg import PoseStamped, Quaternion, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.node import ControlNode
 from navette.runtime import Parameter
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 
 class World:

@@ -18,7 +18,7 @@ from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import Path
 from navette.runtime import Parameter
 from navette.runtime.stage.path_messages import path_message
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 STRAIGHT = tangent_path(np.array([[0, 0], [3, 0.0]]))
 Result = FollowPath.Result

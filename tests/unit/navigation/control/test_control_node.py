@@ -11,7 +11,7 @@ from control_plant import tangent_path
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.runtime import Parameter
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 STRAIGHT = tangent_path(np.array([[0, 0], [3, 0.0]]))
 

@@ -17,7 +17,7 @@ from navette.msgs.std_msgs.msg import Header
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.grids import grid_from_message
 from navette.runtime import Parameter
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 
 def scan(ranges, stamp_ns: int = 0, **values) -> LaserScan:

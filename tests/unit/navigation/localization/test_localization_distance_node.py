@@ -9,7 +9,7 @@ from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import NavSatFix
 from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.runtime import Parameter, ns_to_stamp
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 SECOND = 1_000_000_000
 DISTANCE = "/odom_integrator/distance"

@@ -19,7 +19,7 @@ from navette.navigation.localization.ekf.consistency import (
 from navette.navigation.localization.ekf.filter import Innovation
 from navette.navigation.localization.ekf.measurement import Measurement
 from navette.navigation.localization.ekf.state import SIZE
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 SECOND = 1_000_000_000
 POSITION, VELOCITY = (0, 1), (3, 4, 5)

@@ -18,7 +18,7 @@ from navette.msgs.sensor_msgs.msg import Imu, NavSatFix
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.runtime import Parameter, ns_to_stamp
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 SECOND = 1_000_000_000
 ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()

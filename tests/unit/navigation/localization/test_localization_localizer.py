@@ -14,8 +14,8 @@ from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.rcl_interfaces.msg import Log
 from navette.navigation.localization.localizer.node import LocalizerNode
 from navette.runtime.stage.path_messages import pose_message, pose_of
+from navette.runtime.testing import GraphHarness, Probe
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness, Probe
 
 
 @pytest.fixture

@@ -29,8 +29,8 @@ from navette.navigation.mapping import MapMemory, MapMemoryParams
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter
 from navette.runtime.stage.path_messages import pose_message
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 SPEC = GridSpec(0.1, 40, 40, Pose2(-2.0, -2.0, 0.0))
 

@@ -21,8 +21,8 @@ from navette.navigation.grids import GridSpec, grid_from_message, grid_to_messag
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter
 from navette.runtime.stage.path_messages import pose_message
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 CELLS = np.full((40, 60), -1, np.int8)
 CELLS[2:38, 2:58] = 0

@@ -27,7 +27,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter, ns_to_stamp
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 SPEC = GridSpec(0.1, 61, 61, Pose2(-3.05, -3.05, 0.0))
 AHEAD = 1.3  # of the sensor before the base, m

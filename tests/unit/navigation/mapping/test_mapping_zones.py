@@ -14,7 +14,7 @@ from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.mapping.zones import FilterMask
 from navette.navigation.mapping.zones.node import ZonesNode
 from navette.runtime import DurabilityPolicy, Parameter, QoSProfile
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

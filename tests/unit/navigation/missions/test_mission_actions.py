@@ -15,8 +15,8 @@ from navette.msgs.std_srvs.srv import Trigger
 from navette.navigation.missions.node import MissionNode
 from navette.runtime import Parameter
 from navette.runtime.action import ActionClient
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 SUCCEEDED = GoalStatus.STATUS_SUCCEEDED
 CANCELED = GoalStatus.STATUS_CANCELED

@@ -11,8 +11,8 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.std_msgs.msg import Header
 from navette.navigation.missions.node import MissionNode
 from navette.runtime import Parameter
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 
 class FakePlanner:

@@ -16,8 +16,8 @@ from navette.navigation.grids import CellWindow, grid_to_message, window_to_mess
 from navette.navigation.grids.spec import Cells
 from navette.navigation.planning.node import PlannerNode
 from navette.runtime import Parameter
+from navette.runtime.testing import GraphHarness
 from navette.runtime.time import ns_to_stamp
-from navette.testing import GraphHarness
 
 
 class World:

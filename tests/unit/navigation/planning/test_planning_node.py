@@ -19,7 +19,7 @@ from navette.navigation.grids import CellWindow
 from navette.navigation.planning import NewMap
 from navette.navigation.planning.planner import Planner
 from navette.runtime import Parameter, StaticTransformBroadcaster
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from navette.msgs.nav2_msgs.action import ComputePathThroughPoses, ComputePathTo
 from navette.msgs.nav2_msgs.srv import IsPathValid
 from navette.msgs.nav_msgs.msg import Path
 from navette.runtime.stage.path_messages import path_message, pose_message, poses_of
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 ToPose = ComputePathToPose.Result
 ThroughPoses = ComputePathThroughPoses.Result

@@ -14,7 +14,7 @@ from navette.msgs.action_msgs.msg import GoalStatus
 from navette.msgs.nav2_msgs.action import SmoothPath
 from navette.navigation.planning.path_shape import directions, headed, turn_in_place
 from navette.runtime.stage.path_messages import path_message, poses_of
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 Result = SmoothPath.Result
 ZIGZAG = headed(np.array([(1, 2), (3, 2), (3, 4), (5, 4), (5, 6), (8, 6.0)]))

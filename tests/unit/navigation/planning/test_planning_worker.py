@@ -19,7 +19,7 @@ from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.planner import Goal, Plan, Planner
 from navette.runtime.clock import PacedClock
 from navette.runtime.stage.path_messages import pose_message
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 WAIT_S = 30.0
 

@@ -21,8 +21,8 @@ from navette.navigation.servers.lifecycle_plan import next_transition, state_of_
 from navette.navigation.stack.robot import simulate_robot
 from navette.navigation.stack.stack import NavigationStack
 from navette.runtime.stage.path_messages import pose_message
+from navette.runtime.testing import GraphHarness
 from navette.sim import World
-from navette.testing import GraphHarness
 
 Command = ManageLifecycleNodes.Request
 MANAGED = (

@@ -20,7 +20,7 @@ from navette.msgs.slam_toolbox.srv import (
 from navette.msgs.std_msgs.msg import String
 from navette.navigation.slam.node import SlamNode
 from navette.runtime.stage.path_messages import pose_of
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 from slam_office import Step
 
 AT = {"start_x_m": 1.5, "start_y_m": 1.5}

@@ -20,7 +20,7 @@ from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.slam.node import SlamNode
 from navette.runtime import DurabilityPolicy, Parameter, QoSProfile
 from navette.runtime.stage.path_messages import pose_message, pose_of
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 from slam_office import Step, drive, loop
 
 STEPS = list(drive(seed=2, poses=loop(0.1)[:60]))

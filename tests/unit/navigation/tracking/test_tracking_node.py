@@ -6,9 +6,9 @@ import numpy as np
 
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.navigation.tracking.node import TrackingNode
+from navette.runtime.testing import GraphHarness
 from navette.sim import World, load_robot
 from navette.sim.node import SimNode
-from navette.testing import GraphHarness
 
 OBSTACLES = "/tracked_obstacles"
 

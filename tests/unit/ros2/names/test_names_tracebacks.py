@@ -5,7 +5,7 @@ import pytest
 import navette
 from navette.errors import CallbackError
 from navette.ros2.names.tracebacks import shortened
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 PROGRAM = """
 def tick():

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @pytest.fixture

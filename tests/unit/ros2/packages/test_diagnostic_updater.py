@@ -22,7 +22,7 @@ from navette.ros2.packages.diagnostic_updater import (
     Updater,
 )
 from navette.runtime import Node, Parameter, Time
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE

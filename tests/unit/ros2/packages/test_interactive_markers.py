@@ -18,7 +18,7 @@ from navette.ros2.packages.interactive_markers import (
     MenuHandler,
 )
 from navette.runtime import Node
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 AT_2 = Pose(position=Point(x=2.0))
 

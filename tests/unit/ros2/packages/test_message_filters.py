@@ -18,7 +18,7 @@ from navette.ros2.packages.message_filters import (
     TimeSynchronizer,
 )
 from navette.runtime import ClockType, Time
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 MS = 1_000_000
 

@@ -17,7 +17,7 @@ from navette.ros2.packages.ros2topic.api import (
 )
 from navette.runtime import Node
 from navette.runtime.qos import DurabilityPolicy, ReliabilityPolicy
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def test_topics_and_their_classes() -> None:

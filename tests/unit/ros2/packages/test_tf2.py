@@ -35,7 +35,7 @@ from navette.runtime import (
     Node,
     Time,
 )
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 HALF = math.sqrt(0.5)
 

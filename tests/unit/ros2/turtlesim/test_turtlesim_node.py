@@ -20,7 +20,7 @@ from navette.msgs.turtlesim.srv import (
 )
 from navette.msgs.visualization_msgs.msg import Marker, MarkerArray
 from navette.ros2.turtlesim.node import TurtleSimNode
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from navette.errors import ParameterError
 from navette.params import Params, param
 from navette.params.plugins import MethodRegistry
 from navette.runtime import Parameter, StageNode
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 HORNS = MethodRegistry("horn", "navette.test_horns", {"sound": ()})
 

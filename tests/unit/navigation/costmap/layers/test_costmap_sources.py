@@ -23,7 +23,7 @@ from navette.navigation.grids import grid_from_message
 from navette.navigation.grids.hit_points import points_from_message
 from navette.ros2.packages.sensor_msgs_py.point_cloud2 import create_cloud_xyz32
 from navette.runtime import Parameter
-from navette.testing import GraphHarness, Probe
+from navette.runtime.testing import GraphHarness, Probe
 
 STAMP = 100_000_000
 

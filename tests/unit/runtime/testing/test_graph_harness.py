@@ -5,7 +5,7 @@ import pytest
 from navette.errors import InvalidValueError
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import Node
-from navette.testing import GraphHarness
+from navette.runtime.testing import GraphHarness
 
 
 def doubling(graph: GraphHarness) -> Node:

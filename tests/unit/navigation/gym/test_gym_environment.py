@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-import navette.gym
+import navette.navigation.gym
 from navette.errors import InvalidValueError, ParameterError, UnknownNameError
 from navette.geometry import Pose2
-from navette.gym import NavigationEnv
+from navette.navigation.gym import NavigationEnv
 from navette.sim import World, load_robot
 
 ID = "navette/Navigation-v0"
@@ -320,15 +320,16 @@ def test_a_robot_without_a_scanner_is_named() -> None:
 
 def test_the_package_registers_the_id() -> None:
     assert ID in gymnasium.registry
-    assert set(navette.gym.__all__) <= set(dir(navette.gym))
+    assert set(navette.navigation.gym.__all__) <= set(dir(navette.navigation.gym))
 
 
 @pytest.mark.parametrize(
     ("imports", "name"),
     [
         ("import gymnasium, navette", ID),
-        ("import navette, gymnasium, navette.gym", ID),
-        ("import gymnasium", f"navette.gym:{ID}"),
+        ("import navette, gymnasium, navette.navigation.gym", ID),
+        ("import gymnasium", f"navette:{ID}"),
+        ("import gymnasium", f"navette.navigation.gym:{ID}"),
     ],
 )
 def test_a_new_program_makes_the_environment(imports: str, name: str) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.gym.route import FreeSpace, Point
 from navette.navigation.bench.dynabarn import GOAL
+from navette.navigation.gym.route import FreeSpace, Point
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.worlds import moving_worlds

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from navette.geometry import Pose2
-from navette.gym import NavigationEnvParams
 from navette.navigation.bench.run import run_trial
 from navette.navigation.bench.trial import Trial
+from navette.navigation.gym import NavigationEnvParams
 from navette.params import info_of
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 EXAMPLE = ROOT / "examples" / "32_train_a_policy.py"
 
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Pose2
-from navette.gym.drawing import draw_episode
-from navette.gym.ends import choose_ends
-from navette.gym.observation import Observation, Observer
-from navette.gym.params import NavigationEnvParams
-from navette.gym.route import Point
-from navette.gym.worlds import NodeParameters, WorldSource
+from navette.navigation.gym.drawing import draw_episode
+from navette.navigation.gym.ends import choose_ends
+from navette.navigation.gym.observation import Observation, Observer
+from navette.navigation.gym.params import NavigationEnvParams
+from navette.navigation.gym.route import Point
+from navette.navigation.gym.worlds import NodeParameters, WorldSource
 from navette.sim import Scene, Simulator
 from navette.sim.scene import MecanumDrive
 from navette.sim.sensor_specs import LidarSensor

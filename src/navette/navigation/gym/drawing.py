@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from navette.geometry import Pose2
-from navette.gym.route import Point
-from navette.gym.worlds import EpisodeWorld
+from navette.navigation.gym.route import Point
+from navette.navigation.gym.worlds import EpisodeWorld
 
 EDGE_PX = 600
 """Longer edge of the picture."""

@@ -27,7 +27,7 @@ from navette.runtime import (
     ReliabilityPolicy,
     VirtualClock,
 )
-from navette.testing.goal_probe import GoalProbe
+from navette.runtime.testing.goal_probe import GoalProbe
 
 N = TypeVar("N", bound=Node)
 

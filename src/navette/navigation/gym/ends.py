@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.gym.route import Point, Route
-from navette.gym.worlds import EpisodeWorld
+from navette.navigation.gym.route import Point, Route
+from navette.navigation.gym.worlds import EpisodeWorld
 
 _ROOM_M = 0.1  # from the robot at a drawn place to the nearest obstacle, at least
 _PATH_ROOM_M = 0.05  # beside the path
