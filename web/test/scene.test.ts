@@ -72,6 +72,24 @@ describe("displays", () => {
     expect(display("/lidar").status().text).toBe("wrong type: std_msgs/msg/String");
   });
 
+  it("mark all contacts of a run, also those before the page was opened", () => {
+    connection.addTopic("/contacts", "diagnostic_msgs/msg/DiagnosticArray");
+    expect(display("/contacts").status()).toEqual({ level: "ok", text: "no contacts" });
+    const contact = (count: number, x: number): object => {
+      const facts = { frame: "map", x_m: x, y_m: 2, z_m: 0.1, time_s: 4.25, count };
+      return { level: 2, name: "sim: contact", message: "robot touched box", values: Object.entries(facts).map(([key, value]) => ({ key, value: String(value) })) };
+    };
+    connection.send("/contacts", { header, status: [contact(1, 1), contact(2, 3)] });
+    const [part] = display("/contacts").parts();
+    expect(part?.frame).toBe("map");
+    expect(part?.primitives.map((each) => each.kind === "sign" && each.pose.translation)).toEqual([[1, 2, 0.1], [3, 2, 0.1]]);
+    expect(part?.about?.(part.primitives[1]!, { point: [3, 2, 0.1], index: 0 })).toEqual([["contact", "robot touched box"], ["at", "4.3 s"]]);
+    expect(display("/contacts").status()).toEqual({ level: "ok", text: "2 contacts" });
+    connection.send("/contacts", { header, status: [] });
+    expect(display("/contacts").parts()).toEqual([]);
+    expect(display("/contacts").status()).toEqual({ level: "ok", text: "no contacts" });
+  });
+
   it("keep the driven path where it was seen, whatever the map corrects later", () => {
     const correct = (seconds: number, y: number): void =>
       transforms.set({ parent: "map", child: "odom", parent_T_child: { translation: [0, y, 0], rotation: fromYaw(0) }, stampNs: BigInt(seconds) * 1_000_000_000n, source: "tf" });

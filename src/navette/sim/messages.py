@@ -8,7 +8,11 @@ import numpy as np
 from navette.geometry import Transform3
 from navette.geometry.messages import header
 from navette.geometry.se3 import rotate
-from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from navette.msgs.diagnostic_msgs.msg import (
+    DiagnosticArray,
+    DiagnosticStatus,
+    KeyValue,
+)
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
@@ -44,6 +48,7 @@ from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 _ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
 _ESTIMATE_VARIANCE = 1e-4  # in m² and rad²
 _IDENTITY = Transform3.identity()
+_MOST_CONTACTS = 200  # in a message
 _PLANAR = np.array([0, 1, 5, 6, 7, 11, 30, 31, 35])  # x, y, yaw of 6 × 6
 
 
@@ -193,10 +198,22 @@ def camera_info_message(sensor: CameraSensor, stamp_ns: int, frame: str) -> Came
     )
 
 
-def contact_message(
-    episode: ContactEpisode, count: int, frame: str
+def contacts_message(
+    episodes: Sequence[ContactEpisode], stamp_ns: int, frame: str
+) -> DiagnosticArray:
+    """Diagnostics of the contacts of a run, the newest last, at most 200."""
+    first = max(0, len(episodes) - _MOST_CONTACTS)
+    contacts = [
+        _contact_status(episode, number, frame)
+        for number, episode in enumerate(episodes[first:], first + 1)
+    ]
+    return DiagnosticArray(header=header(stamp_ns, frame), status=contacts)
+
+
+def _contact_status(
+    episode: ContactEpisode, number: int, frame: str
 ) -> DiagnosticStatus:
-    """Diagnostics of a new contact: link, obstacle, place, time, number of contacts."""
+    """Link, obstacle, place, time and number of a contact."""
     x, y, z = episode.place
     values = {
         "part": episode.part,
@@ -206,7 +223,7 @@ def contact_message(
         "y_m": f"{y:.3f}",
         "z_m": f"{z:.3f}",
         "time_s": f"{episode.start_ns / 1e9:.3f}",
-        "count": str(count),
+        "count": str(number),
     }
     return DiagnosticStatus(
         level=DiagnosticStatus.ERROR,

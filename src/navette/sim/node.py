@@ -107,7 +107,7 @@ class SimNode(StageNode):
         Output.of(topics.TF, "moving frames", rate_hz=50),
         Output.of(topics.TF_STATIC, "fixed frames"),
         Output.of(topics.JOINT_STATES, "angles and speeds of the wheels", rate_hz=10),
-        Output.of(topics.CONTACTS, "start of each contact with an obstacle"),
+        Output.of(topics.CONTACTS, "contacts with obstacles since the start"),
         Output.of(
             topics.ACTORS, "moving models of the world, as they stand", rate_hz=20
         ),
@@ -172,7 +172,8 @@ class SimNode(StageNode):
         self.simulator.reset()
         self._readings.clear()
         self._origin_ns = self.get_clock().now_ns
-        self._contacts_reported = 0
+        if self._contacts_reported:
+            self._publish_contacts()
 
     def _start_again(self) -> None:
         """Reset, and leave no part of the run before: goal, pose estimate, maps.
@@ -369,16 +370,20 @@ class SimNode(StageNode):
     def _beat(self) -> None:
         self._advance()
         episodes = self.simulator.contacts.episodes
-        for number in range(self._contacts_reported, len(episodes)):
-            episode = episodes[number]
+        for episode in episodes[self._contacts_reported :]:
             self.get_logger().warning(
                 f"contact: {episode.part} touched {episode.obstacle}"
             )
-            contact = messages.contact_message(
-                episode, number + 1, self.params.map_frame
-            )
-            self.publish(topics.CONTACTS.name, contact)
+        if len(episodes) != self._contacts_reported:
+            self._publish_contacts()
+
+    def _publish_contacts(self) -> None:
+        episodes = self.simulator.contacts.episodes
         self._contacts_reported = len(episodes)
+        message = messages.contacts_message(
+            episodes, self.stamp_ns, self.params.map_frame
+        )
+        self.publish(topics.CONTACTS.name, message)
 
     def _publish_clock(self, stamp_ns: int) -> None:
         self.publish(topics.CLOCK.name, Clock(clock=time_message(stamp_ns)))

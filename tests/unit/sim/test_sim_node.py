@@ -271,7 +271,8 @@ def test_contacts_are_reported() -> None:
     run.listen("/contacts")
     run.drive(0.8, 0.0)
     run.spin(4.0)
-    (reported,) = run.received["/contacts"]
+    (message,) = run.received["/contacts"]
+    (reported,) = message.status
     assert "robot/chassis touched box" in reported.message
     facts = {pair.key: pair.value for pair in reported.values}
     assert set(facts) >= {"part", "obstacle", "time_s", "frame"}
@@ -279,6 +280,16 @@ def test_contacts_are_reported() -> None:
     assert float(facts["x_m"]) == pytest.approx(2.5, abs=0.02)
     assert abs(float(facts["y_m"])) < 0.55  # a corner of the chassis
     assert run.sim.simulator.contacts.count == 1
+
+    # A later subscriber receives past contacts; after a reset there are none.
+    run.received.clear()
+    run.listen("/contacts")
+    run.spin(0.1)
+    (late,) = run.received["/contacts"]
+    assert late == message
+    run.sim.reset()
+    run.spin(0.2)
+    assert run.received["/contacts"][-1].status == []
 
 
 def test_limits_change_while_running_and_frames_do_not() -> None:

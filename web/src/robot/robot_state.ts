@@ -1,7 +1,7 @@
 /** The robot as the page knows it: pose, goal, statuses of the stages, who commands, contacts. */
 
 import type { Connection, Dispose } from "../connection/connection";
-import { transformOf, valuesOf, type DiagnosticStatus, type Odometry, type PointStamped, type PoseStamped } from "../scene/messages";
+import { transformOf, valuesOf, type DiagnosticArray, type DiagnosticStatus, type Odometry, type PointStamped, type PoseStamped } from "../scene/messages";
 import { nanosecondsOf } from "../transforms/stamp";
 import { apply, fromYaw, yawOf, type Transform } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
@@ -68,8 +68,10 @@ export class RobotState {
     stage(PLANNER_STATUS, "planner");
     stage(CONTROL_STATUS, "control");
     stage(COMMANDER, "arbiter");
-    connection.subscribe<DiagnosticStatus>(CONTACTS, { every: true }, ({ value }) => {
-      this.contacts = Number(valuesOf(value)["count"]) || this.contacts + 1;
+    connection.subscribe<DiagnosticArray>(CONTACTS, {}, ({ type, value }) => {
+      if (type !== "diagnostic_msgs/msg/DiagnosticArray") return;
+      const newest = value.status.at(-1); // the message has the newest contacts only
+      this.contacts = Math.max(value.status.length, Number(newest && valuesOf(newest)["count"]) || 0);
       this.#notify();
     });
     connection.subscribe<PointStamped>(GOAL_POINT, { every: true }, ({ value: { header, point } }) => {

@@ -1,7 +1,7 @@
 /** Which display shows a topic: by type, with settings that suit its name. */
 
 import type { Topic } from "../connection/connection";
-import { ODOMETRY } from "../robot/names";
+import { CONTACTS, ODOMETRY } from "../robot/names";
 import type { Display, DisplayTraits, Surroundings } from "./display";
 import { GridMapDisplay } from "./displays/grid_map";
 import { MarkersDisplay } from "./displays/markers";
@@ -65,9 +65,9 @@ function namedDisplay(around: Surroundings, { name, type }: Topic): Display | nu
   if (type === "std_msgs/msg/String" && name.endsWith("world_description")) {
     return new ModelDisplay(around, name, type, { title: "World shapes", order: 12, isShown: "3d", colour: "quiet", opacity: 0.9, every: true });
   }
-  if (name === "/contacts" && type === "diagnostic_msgs/msg/DiagnosticStatus") {
+  if (name === CONTACTS && type === "diagnostic_msgs/msg/DiagnosticArray") {
     const size = { ...ARROW_SIZE, value: 14 };
-    return new ContactsDisplay(around, name, type, { title: "Contacts", order: 70, isShown: true, colour: "bad", size, every: true });
+    return new ContactsDisplay(around, name, type, { title: "Contacts", order: 70, isShown: true, colour: "bad", size });
   }
   return null;
 }

@@ -6,7 +6,7 @@ import { placeOf } from "../robot/robot_state";
 import { nextFrame } from "../ui/frames";
 import { displayOf } from "./display_kinds";
 import { PLAIN_LOOK, type Display, type Look, type Surroundings } from "./display";
-import { ContactsDisplay, FramesDisplay, GoalDisplay, GroundGridDisplay, RobotDisplay } from "./displays/robot";
+import { FramesDisplay, GoalDisplay, GroundGridDisplay, RobotDisplay } from "./displays/robot";
 
 /** Looks that the user changed, by the display's id: part of the layout. */
 export type Looks = Record<string, Partial<Look>>;
@@ -102,18 +102,11 @@ export class DisplayList {
       if (!topic.isPublished || this.#topics.has(topic.name) || topic.name.includes("/_")) continue;
       const display = displayOf(this.around, topic);
       if (!display) continue;
-      if (display instanceof ContactsDisplay) display.whereBase = () => this.#whereBase();
       this.#topics.set(topic.name, display);
       this.#apply(display);
       isChanged = true;
     }
     if (isChanged) this.#changed();
-  }
-
-  #whereBase(): ReturnType<ContactsDisplay["whereBase"]> {
-    const { fixedFrame } = this.around;
-    const pose = fixedFrame === null ? null : this.state.baseIn(fixedFrame);
-    return pose && fixedFrame !== null ? { frame: fixedFrame, pose } : null;
   }
 
   #takeState(): void {

@@ -71,6 +71,8 @@ export interface DiagnosticStatus {
   values: { key: string; value: string }[];
 }
 
+export interface DiagnosticArray { header: Header; status: DiagnosticStatus[] }
+
 /** A pose as a transform; an all-zero rotation, as unset messages have, is none. */
 export function transformOf({ position: p, orientation: q }: Pose): Transform {
   const length = Math.hypot(q.x, q.y, q.z, q.w);

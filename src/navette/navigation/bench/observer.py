@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.msgs import topics
-from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.navigation.bench.trial import Point
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile, stamp_to_ns
@@ -64,7 +64,10 @@ class TrialObserver(Node):
 
         if ends_at_contact:
             self.create_subscription(
-                DiagnosticStatus, topics.CONTACTS.name, lambda _: on_end(), 10
+                DiagnosticArray,
+                topics.CONTACTS.name,
+                lambda msg: on_end() if msg.status else None,
+                10,
             )
 
     @property

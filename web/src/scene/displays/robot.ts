@@ -1,7 +1,7 @@
 /** What the page computes from the robot's motion: footprint, trail, contacts; the frames; the grid; the goal. */
 
 import { Display } from "../display";
-import { transformOf, valuesOf, type DiagnosticStatus, type Odometry } from "../messages";
+import { transformOf, valuesOf, type DiagnosticArray, type Odometry } from "../messages";
 import { Placement } from "../placement";
 import { faded, type Part, type Primitive } from "../primitives";
 import { nanosecondsOf } from "../../transforms/stamp";
@@ -125,37 +125,25 @@ export class RobotDisplay extends Display {
   }
 }
 
-interface Contact { readonly frame: string; readonly place: Transform; readonly text: string }
-
-/** diagnostic_msgs/DiagnosticStatus on /contacts: a mark where the robot was, or where it touched. */
-export class ContactsDisplay extends Display<DiagnosticStatus> {
-  /** Where the base is, in a fixed frame. */
-  whereBase: () => { frame: string; pose: Transform } | null = () => null;
-  readonly #contacts: Contact[] = [];
-
-  protected override take(value: DiagnosticStatus): void {
-    const facts = valuesOf(value);
-    const [x, y, z] = [Number(facts["x_m"]), Number(facts["y_m"]), Number(facts["z_m"] ?? 0)];
-    const isPlaced = facts["frame"] !== undefined && Number.isFinite(x + y + z);
-    const base = this.whereBase(); // of a robot that reports no place
-    const place: Transform | undefined = isPlaced ? { ...IDENTITY, translation: [x, y, z] } : base?.pose;
-    const frame = isPlaced ? facts["frame"] : base?.frame;
-    if (place === undefined || frame === undefined) return;
-    this.#contacts.push({ frame, place, text: value.message });
-    if (this.#contacts.length > 500) this.#contacts.shift();
-  }
-
-  override clear(): void {
-    this.#contacts.length = 0;
-    super.clear();
-  }
-
+/** diagnostic_msgs/DiagnosticArray on /contacts: a mark where the robot touched something. */
+export class ContactsDisplay extends Display<DiagnosticArray> {
   protected override build(): Part[] {
-    const frames = new Set(this.#contacts.map(({ frame }) => frame));
+    const contacts = this.#placed();
+    const frames = new Set(contacts.map(({ frame }) => frame));
     return [...frames].map((frame) => {
-      const here = this.#contacts.filter((contact) => contact.frame === frame);
-      const signs = here.map(({ place }) => ({ kind: "sign", shape: "cross", pose: place, sizePx: this.size, colour: this.colour }) as const);
-      return { frame, primitives: signs, about: (primitive) => [["contact", here[signs.indexOf(primitive as never)]?.text ?? ""]] };
+      const here = contacts.filter((contact) => contact.frame === frame);
+      const signs = here.map(({ place }) => ({ kind: "sign", shape: "cross", pose: { ...IDENTITY, translation: place }, sizePx: this.size, colour: this.colour }) as const);
+      return { frame, primitives: signs, about: (primitive) => here[signs.indexOf(primitive as never)]?.about ?? [] };
+    });
+  }
+
+  #placed(): { frame: string; place: Vector; about: [string, string][] }[] {
+    return (this.message?.status ?? []).flatMap((status) => {
+      const { frame, x_m, y_m, z_m = "0", time_s } = valuesOf(status);
+      const place: Vector = [Number(x_m), Number(y_m), Number(z_m)];
+      if (frame === undefined || !place.every(Number.isFinite)) return [];
+      const time: [string, string][] = time_s === undefined ? [] : [["at", `${Number(time_s).toFixed(1)} s`]];
+      return [{ frame, place, about: [["contact", status.message], ...time] }];
     });
   }
 
@@ -164,8 +152,13 @@ export class ContactsDisplay extends Display<DiagnosticStatus> {
     return status.text === "no messages yet" ? { level: "ok", text: "no contacts" } : status;
   }
 
+  protected override isEmpty(): boolean {
+    return false;
+  }
+
   protected override detail(): string {
-    return this.#contacts.length === 1 ? "1 contact" : `${this.#contacts.length} contacts`;
+    const count = this.message?.status.length ?? 0;
+    return count === 0 ? "no contacts" : count === 1 ? "1 contact" : `${count} contacts`;
   }
 }
 
