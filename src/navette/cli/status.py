@@ -1,5 +1,6 @@
 """Progress of a simulation run on stderr; stdout is left for data."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -38,7 +39,7 @@ class StatusScreen:
         self._options = options
         self._console = Console(stderr=True, highlight=False)
         self._longest_m: dict[str, float] = {}
-        self._reported = ""
+        self._reported: list[str] = []
         self._commander = Commander()
         self._starting: Status | None = None
         self._line_due = Stopwatch()
@@ -82,12 +83,14 @@ class StatusScreen:
         """Print a line when a goal starts, ends or fails, and on a takeover."""
         self._print(progress, self._takeover(progress))
         text = self._event(progress)
-        if text is not None and text.plain != self._reported:
-            self._reported = text.plain
+        if text is not None and self._reported[-1:] != [text.plain]:
+            self._reported.append(text.plain)
             self._print(progress, text)
 
     def report(self, summary: RunSummary, *, interrupted: bool) -> None:
-        """Print the summary of the run."""
+        """Print the goals still without an end, then the summary of the run."""
+        if not interrupted:
+            self._report_open_goals(summary)
         reached = sum(goal.result == "reached" for goal in summary.goals)
         clearance = summary.min_clearance_m
         parts = [
@@ -109,6 +112,20 @@ class StatusScreen:
             ),
             soft_wrap=True,
         )
+
+    def _report_open_goals(self, summary: RunSummary) -> None:
+        """Print goals that the planner has not given up: timed out or unfinished."""
+        for goal in summary.goals:
+            if goal.result == "reached":
+                continue
+            line = f"✗ goal {_point(goal.goal)} {goal.result}"
+            if line in self._reported:
+                continue
+            left = goal.distance_left_m
+            if math.isfinite(left):
+                line += f", {left:.1f} m left"
+            stamp = Text(f"{summary.sim_time_s:8.1f} s  ", style="dim")
+            self._console.print(stamp + Text(line, style="yellow"), soft_wrap=True)
 
     def report_failure(self, text: str) -> None:
         self._console.print(Text(text, style="bold red"), soft_wrap=True)

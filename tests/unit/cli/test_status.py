@@ -1,6 +1,7 @@
 """The live line on terminals of several widths."""
 
 import io
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -8,8 +9,11 @@ import pytest
 from rich.console import Console
 
 from navette.cli.status import StatusScreen
+from navette.navigation.missions.sequence import GoalOutcome
 from navette.navigation.stack import RunOptions
 from navette.navigation.stack.monitor import RunProgress
+from navette.navigation.stack.pose_error import PoseError
+from navette.navigation.stack.summary import RunSummary
 from navette.runtime.stage.commander import Commander
 
 
@@ -84,3 +88,32 @@ def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
     run = SimpleNamespace(progress=lambda: canceled, real_time_factor=lambda: 1.0)
     screen._console.print(screen._line(run))
     assert "waiting for a goal" in shown.getvalue()
+
+
+def test_goals_without_an_end_are_named_before_the_summary() -> None:
+    goals = ((1.0, 2.0), (3.0, 4.0), (5.0, 6.0))
+    screen = StatusScreen(RunOptions(goals=goals))
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    screen.on_change(
+        RunProgress(goal=(1.0, 2.0), goal_id="1", state="no_path", failed=True)
+    )
+    outcomes = (
+        GoalOutcome((1.0, 2.0), "no_path", 3.0, 0.0, 2.0),
+        GoalOutcome((3.0, 4.0), "timed_out", 300.0, 170.0, 109.98),
+        GoalOutcome((5.0, 6.0), "unfinished", 0.0, 0.0, math.inf),
+    )
+    summary = RunSummary(
+        goals=outcomes, contacts=0, min_clearance_m=None, sim_time_s=303.0,
+        wall_time_s=30.3, real_time_factor=10.0, seed=0,
+        pose_error_m=PoseError(0.0, 0.0),
+    )  # fmt: skip
+    screen.report(summary, interrupted=False)
+    lines = shown.getvalue().splitlines()
+    assert lines[:3] == [
+        "     0.0 s  ✗ goal (1.0, 2.0) no_path",
+        "   303.0 s  ✗ goal (3.0, 4.0) timed_out, 110.0 m left",
+        "   303.0 s  ✗ goal (5.0, 6.0) unfinished",
+    ]
+    assert lines[3].startswith("done: 0 of 3 goals reached")
+    assert len(lines) == 4
