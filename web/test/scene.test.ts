@@ -90,6 +90,18 @@ describe("displays", () => {
     expect(display("/contacts").status()).toEqual({ level: "ok", text: "no contacts" });
   });
 
+  it("name the bodies of a world", () => {
+    connection.addTopic("/world_description", "std_msgs/msg/String");
+    displays.change(display("/world_description"), { isVisible: true });
+    const box = '<visual name="crate"><geometry><box size="1 2 0.456"/></geometry></visual>';
+    const post = '<visual><geometry><cylinder radius="0.1" length="3"/></geometry></visual>';
+    connection.send("/world_description", { data: `<robot name="hall"><link name="map">${box}${post}</link></robot>` });
+    const [part] = display("/world_description").parts();
+    const about = part!.primitives.map((primitive) => part!.about?.(primitive, { point: [0, 0, 0], index: 0 }));
+    expect(about).toEqual([[["name", "crate"], ["shape", "box, 1 × 2 × 0.46 m"]], [["link", "map"], ["shape", "cylinder, ⌀ 0.2 m, 3 m high"]]]);
+    expect(display("/world_description").status().text).toBe("2 shapes");
+  });
+
   it("keep the driven path where it was seen, whatever the map corrects later", () => {
     const correct = (seconds: number, y: number): void =>
       transforms.set({ parent: "map", child: "odom", parent_T_child: { translation: [0, y, 0], rotation: fromYaw(0) }, stampNs: BigInt(seconds) * 1_000_000_000n, source: "tf" });
@@ -260,18 +272,49 @@ describe("displays", () => {
     expect(display("/map").look.opacity).toBe(0.3);
   });
 
-  it("pick the topmost first", () => {
+  it("are found where they are drawn", () => {
     connection.addTopic("/map", "nav_msgs/msg/OccupancyGrid");
     connection.addTopic("/lidar", "sensor_msgs/msg/LaserScan");
     transforms.set({ parent: "map", child: "lidar", parent_T_child: IDENTITY, stampNs: 1_000_000_000n, source: "tf" });
     connection.send("/map", grid(4, [0, 0, 100, -1]));
     connection.send("/lidar", scan);
-    const items = displays.all.flatMap((each) => each.parts().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 })));
+    const items = displays.all.filter((each) => each !== displays.grid).flatMap((each) => each.parts().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 })));
     const [hit] = pick(items, above(0.01, 2));
     expect(hit?.primitive.kind).toBe("points");
     const cell = pick(items, above(0.25, 2.25)).find(({ primitive }) => primitive.kind === "raster");
     expect(cell?.item.part.about?.(cell.primitive, cell.hit)).toContainEqual(["value", "100 (occupied)"]);
     expect(pick(items, above(0.75, 2.25)).some(({ primitive }) => primitive.kind === "raster")).toBe(false);
+  });
+
+  it("answer a click with the nearest thing, small ones before large areas, whatever is drawn on top", () => {
+    const line = (y: number, fill?: string): object => ({ kind: "lines", mode: "strip", positions: Float32Array.from([0, y, 0, 5, y, 0]), colour: "#000", widthPx: 2, fill });
+    const wall = { kind: "solid", shape: "box", pose: { translation: [2, 0, 0.5], rotation: fromYaw(0) }, size: [10, 10, 1], colour: "#000" };
+    const robot = { ...wall, size: [0.3, 0.3, 0.3] };
+    const sign = { kind: "sign", shape: "cross", pose: { translation: [4, 0.06, 0], rotation: fromYaw(0) }, sizePx: 14, colour: "#000" };
+    const [near, far] = [line(0.02), line(0.08)];
+    const items = [sign, near, robot, far, wall].map((primitive) => ({ part: { frame: "map", primitives: [primitive] }, fixed_T_part: IDENTITY, opacity: 1 }));
+    const found = (x: number, y: number): unknown[] => pick(items as never, above(x, y)).map(({ primitive }) => primitive);
+    expect(found(1, 0)).toEqual([near, far, wall]);
+    expect(found(4, 0.055)[0]).toBe(sign);
+    expect(found(2, -0.04)).toEqual([robot, near, wall]); // in the robot, 6 pixels beside a line
+    expect(found(2, 0.02)[0]).toBe(near);
+  });
+
+  it("find places within a filled outline, and the edge that closes it", () => {
+    const outline = { kind: "lines", mode: "loop", positions: Float32Array.from([0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0]), colour: "#000", widthPx: 2, fill: "#fff" };
+    const items = [{ part: { frame: "map", primitives: [outline] }, fixed_T_part: IDENTITY, opacity: 1 }];
+    const found = (x: number, y: number): unknown => pick(items as never, above(x, y))[0]?.hit.point;
+    expect(found(1, 1)).toEqual([1, 1, 0]);
+    expect(found(-0.05, 1)).toEqual([0, 1, 0]);
+    expect(found(-0.5, 1)).toBeUndefined();
+  });
+
+  it("answer a click from the side with what is in front", () => {
+    const crate = (y: number, size: number): object => ({ kind: "solid", shape: "box", pose: { translation: [0, y, 0], rotation: fromYaw(0) }, size: [size, size, size], colour: "#000" });
+    const [front, back] = [crate(0, 4), crate(5, 1)];
+    const items = [{ part: { frame: "map", primitives: [back, front] }, fixed_T_part: IDENTITY, opacity: 1 }];
+    const ray: Parameters<typeof pick>[1] = { origin: [0, -20, 0], direction: [0, 1, 0], metresPerPx: 0.01 };
+    expect(pick(items as never, ray).map(({ primitive }) => primitive)).toEqual([front, back]);
   });
 
   it("find a body from the side where it is, and not a long wall beside the line of sight", () => {

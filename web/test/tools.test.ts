@@ -1,3 +1,4 @@
+import { cardPlace } from "../src/workbench/info_card";
 import { beforeEach, describe, expect, it } from "vitest";
 import type { ToolContext } from "../src/tools/tool";
 import { MeasureTool } from "../src/tools/measure";
@@ -38,5 +39,28 @@ describe("measuring", () => {
     click(1, 0);
     tool.cancel();
     expect(tool.overlay()).toEqual([]);
+  });
+});
+
+describe("the card of what is clicked", () => {
+  const card = { width: 264, height: 240 };
+  const covers = (press: [number, number], scene: { width: number; height: number }, free: { left: number; top: number; width: number; height: number }): boolean => {
+    const { left, top } = cardPlace(press, card, scene, free);
+    expect(left).toBeGreaterThanOrEqual(8);
+    expect(top).toBeGreaterThanOrEqual(8);
+    expect(left + card.width).toBeLessThanOrEqual(scene.width - 8);
+    return left + card.width > free.left && top + card.height > free.top;
+  };
+
+  it("is beside the press", () => {
+    expect(cardPlace([100, 300], card, { width: 1300, height: 780 }, { left: 1000, top: 660, width: 290, height: 110 })).toEqual({ left: 116, top: 280 });
+  });
+
+  it.each([
+    ["a large screen", { width: 1368, height: 812 }, { left: 1070, top: 700, width: 284, height: 98 }],
+    ["a phone", { width: 360, height: 640 }, { left: 190, top: 530, width: 162, height: 102 }],
+    ["a phone on its side", { width: 800, height: 260 }, { left: 560, top: 150, width: 230, height: 102 }],
+  ])("never covers Stop on %s", (_, scene, free) => {
+    for (let px = 10; px < scene.width; px += 50) for (let py = 10; py < scene.height; py += 30) expect(covers([px, py], scene, free)).toBe(false);
   });
 });

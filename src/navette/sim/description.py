@@ -61,7 +61,8 @@ def describe_world(compiled: Compiled, map_frame: str) -> str:
             px, py, pz = model.geom_pos[index].tolist()
             r, g, b, a = model.geom_rgba[index].tolist()
             pose = Transform3((px, py, pz), (x, y, z, w))
-            _add_visual(link, shape, pose, (r, g, b, a))
+            name = compiled.geom_owner[index].removesuffix("/link")
+            _add_visual(link, shape, pose, (r, g, b, a), name)
     return _text(root)
 
 
@@ -100,16 +101,20 @@ def _add_geometry(element: Xml.Element, geometry: Geometry) -> None:
 
 
 def _add_visual(
-    link: Xml.Element, shape: Shape, pose: Transform3, colour: Colour
+    link: Xml.Element,
+    shape: Shape,
+    pose: Transform3,
+    colour: Colour,
+    name: str = "",
 ) -> None:
     """Compose a shape of boxes, cylinders and spheres, which URDF has."""
     if isinstance(shape, Capsule):
         tip = Transform3((0.0, 0.0, shape.length / 2), (0.0, 0.0, 0.0, 1.0))
-        _add_visual(link, Cylinder(shape.radius, shape.length), pose, colour)
+        _add_visual(link, Cylinder(shape.radius, shape.length), pose, colour, name)
         for end in (tip, tip.inverse()):
-            _add_visual(link, Sphere(shape.radius), pose @ end, colour)
+            _add_visual(link, Sphere(shape.radius), pose @ end, colour, name)
         return
-    visual = Xml.SubElement(link, "visual")
+    visual = Xml.SubElement(link, "visual", {"name": name} if name else {})
     if isinstance(shape, Plane):
         below = Transform3((0.0, 0.0, -_FLOOR_M / 2), (0.0, 0.0, 0.0, 1.0))
         pose, shape = pose @ below, Box((*shape.size, _FLOOR_M))

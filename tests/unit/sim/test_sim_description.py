@@ -1,5 +1,6 @@
 """URDF for viewers, read back by the URDF reader."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -52,3 +53,6 @@ def test_world_description(tmp_path: Path) -> None:
     (model,) = load_world(path).models
     assert [link.name for link in model.links] == ["map"]
     assert len(model.links[0].geometries) == 12  # floor, 4 walls, 5 boxes, 2 cylinders
+    names = re.findall(r'<visual name="([^"]+)"', path.read_text())
+    assert len(names) == 12
+    assert "wall_north" in names

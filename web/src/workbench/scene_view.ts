@@ -39,6 +39,7 @@ export class SceneView {
     this.#stick = makeStick(operator);
     this.#stick.hidden = true;
     const [toolBar, viewBar] = [this.#toolBar(), this.#viewBar()];
+    const operate = h("div", { id: "operate" }, this.#stick, h("div", { class: "row" }, this.#drive, this.#pause, this.#cancel), h("div", { class: "row" }, this.#release, this.#stop));
     this.element = h(
       "main",
       { class: "scene", "aria-label": "Scene" },
@@ -49,9 +50,9 @@ export class SceneView {
       waypointCard(tools, operator),
       h("div", { class: "foot" }, this.#scale, this.#cursor, this.#help),
       this.#answer,
-      h("div", { id: "operate" }, this.#stick, h("div", { class: "row" }, this.#drive, this.#pause, this.#cancel), h("div", { class: "row" }, this.#release, this.#stop)),
+      operate,
     );
-    const info = new InfoCard(scene, operator, this.element);
+    const info = new InfoCard(scene, operator, this.element, operate);
     const bars = new ResizeObserver(() => {
       scene.covered = { coveredLeft: toolBar.offsetLeft + toolBar.offsetWidth, coveredTop: viewBar.offsetTop + viewBar.offsetHeight };
     });

@@ -7,6 +7,8 @@ import { MeshStore } from "./meshes";
 
 interface Visual {
   readonly link: string;
+  /** Of the shape itself; empty without one. */
+  readonly name: string;
   readonly pose: Transform;
   readonly shape: "box" | "sphere" | "cylinder" | "mesh";
   readonly size: Vector;
@@ -37,12 +39,17 @@ export class ModelDisplay extends Display<{ data: string }> {
   }
 
   protected override build(): Part[] {
-    const byLink = new Map<string, Primitive[]>();
+    const byLink = new Map<string, Map<Primitive, Visual>>();
     for (const visual of this.#visuals) {
       const primitive = this.#primitive(visual);
-      if (primitive) byLink.set(visual.link, [...(byLink.get(visual.link) ?? []), primitive]);
+      const drawn = byLink.get(visual.link) ?? new Map<Primitive, Visual>();
+      if (primitive) byLink.set(visual.link, drawn.set(primitive, visual));
     }
-    return [...byLink].map(([frame, primitives]) => ({ frame, primitives, about: () => [["link", frame]] }));
+    return [...byLink].map(([frame, drawn]) => ({
+      frame,
+      primitives: [...drawn.keys()],
+      about: (primitive) => aboutVisual(drawn.get(primitive)),
+    }));
   }
 
   #primitive({ pose, shape, size, colour: own, uri }: Visual): Primitive | null {
@@ -56,8 +63,23 @@ export class ModelDisplay extends Display<{ data: string }> {
 
   protected override detail(): string {
     const links = new Set(this.#visuals.map(({ link }) => link)).size;
-    return this.#visuals.length > 0 ? `${this.#visuals.length} shapes of ${links} ${links === 1 ? "link" : "links"}` : "no visual shapes";
+    const count = this.#visuals.length;
+    return count === 0 ? "no visual shapes" : `${count} ${count === 1 ? "shape" : "shapes"}${links > 1 ? ` of ${links} links` : ""}`;
   }
+}
+
+/** What a body is: its name, else its link, and its shape with its size. */
+function aboutVisual(visual: Visual | undefined): [string, string][] {
+  if (!visual) return [];
+  const { link, name, shape, size: [x, y, z], uri } = visual;
+  const length = (metres: number): string => String(Number(metres.toFixed(2)));
+  const sizes = {
+    box: `box, ${length(x)} × ${length(y)} × ${length(z)} m`,
+    cylinder: `cylinder, ⌀ ${length(x)} m, ${length(z)} m high`,
+    sphere: `sphere, ⌀ ${length(x)} m`,
+    mesh: uri.split("/").at(-1) ?? "mesh",
+  };
+  return [name ? ["name", name] : ["link", link], ["shape", sizes[shape]]];
 }
 
 /** The visual shapes of a URDF; XACRO macros are not expanded. */
@@ -87,7 +109,7 @@ function readVisual(visual: Element, link: string, materials: Map<string, string
   const colour = (material && readColour(material)) ?? materials.get(material?.getAttribute("name") ?? "") ?? null;
   const shape = visual.querySelector("geometry")?.firstElementChild;
   const number = (name: string): number => Number(shape?.getAttribute(name) ?? 0);
-  const common = { link, pose, colour, uri: "" };
+  const common = { link, name: visual.getAttribute("name") ?? "", pose, colour, uri: "" };
   switch (shape?.tagName) {
     case "box":
       return { ...common, shape: "box", size: numbers(shape.getAttribute("size"), [1, 1, 1]) };

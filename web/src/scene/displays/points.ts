@@ -1,5 +1,6 @@
 /** Measured points: sensor_msgs LaserScan, PointCloud2 and Range. */
 
+import { fixed } from "../../robot/text";
 import { boxOf, rampOf, readCloud } from "../cloud_reading";
 import type { LaserScan, PointCloud2, Range } from "../messages";
 import { faded, type Part } from "../primitives";
@@ -28,8 +29,8 @@ export class ScanDisplay extends StampedDisplay<LaserScan> {
       frame: scan.header.frame_id,
       primitives: count > 0 ? [points] : [],
       about: (_, { point: [x, y] }) => [
-        ["range", `${Math.hypot(x, y).toFixed(3)} m`],
-        ["bearing", `${((Math.atan2(y, x) * 180) / Math.PI).toFixed(1)}°`],
+        ["range", `${fixed(Math.hypot(x, y), 3)} m`],
+        ["bearing", `${fixed((Math.atan2(y, x) * 180) / Math.PI, 1)}°`],
       ],
     }];
   }
@@ -59,7 +60,7 @@ export class CloudDisplay extends StampedDisplay<PointCloud2> {
     return [{
       frame: cloud.header.frame_id,
       primitives: [{ kind: "points", positions, ...colours, colour: this.colour, sizePx: this.size }],
-      about: (_, { point: [x, y, z] }) => [["point", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`]],
+      about: (_, { point: [x, y, z] }) => [["point", `${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} m`]],
     }];
   }
 
@@ -91,12 +92,12 @@ export class RangeDisplay extends StampedDisplay<Range> {
     return [{
       frame: value.header.frame_id,
       primitives: [{ kind: "lines", positions, mode: "loop", colour: faded(this.colour, hits ? 1 : 0.4), widthPx: this.size, fill }],
-      about: () => [["range", hits ? `${value.range.toFixed(3)} m` : "nothing in range"]],
+      about: () => [["range", hits ? `${fixed(value.range, 3)} m` : "nothing in range"]],
     }];
   }
 
   protected override detail(): string {
     const value = this.message;
-    return value && value.range <= value.max_range ? `${value.range.toFixed(2)} m` : "nothing in range";
+    return value && value.range <= value.max_range ? `${fixed(value.range, 2)} m` : "nothing in range";
   }
 }

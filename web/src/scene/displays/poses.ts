@@ -1,5 +1,6 @@
 /** Paths, poses, polygons and points. */
 
+import { fixed } from "../../robot/text";
 import {
   transformOf, type Header, type ParticleCloud, type Path, type PointStamped, type PolygonStamped, type PoseArray, type PoseStamped,
   type PoseWithCovarianceStamped,
@@ -24,7 +25,7 @@ export class PathDisplay extends StampedDisplay<Path> {
     return [{
       frame: this.headerOf(path).frame_id,
       primitives: path.poses.length > 1 ? [line] : [],
-      about: () => [["length", `${this.#lengthM.toFixed(2)} m`], ["poses", String(path.poses.length)]],
+      about: () => [["length", `${fixed(this.#lengthM, 2)} m`], ["poses", String(path.poses.length)]],
     }];
   }
 
@@ -33,7 +34,7 @@ export class PathDisplay extends StampedDisplay<Path> {
   }
 
   protected override detail(): string {
-    return this.message?.poses.length ? `${this.#lengthM.toFixed(1)} m, ${this.message.poses.length} poses` : "the path is empty";
+    return this.message?.poses.length ? `${fixed(this.#lengthM, 1)} m, ${this.message.poses.length} poses` : "the path is empty";
   }
 }
 
@@ -88,7 +89,7 @@ function posesOf(value: AnyPoses): Transform[] {
 function aboutPose(primitive: Primitive): [string, string][] {
   if (primitive.kind !== "sign") return [];
   const { translation: [x, y], rotation } = primitive.pose;
-  return [["pose", `${x.toFixed(2)}, ${y.toFixed(2)} m, ${((yawOf(rotation) * 180) / Math.PI).toFixed(0)}°`]];
+  return [["pose", `${fixed(x, 2)}, ${fixed(y, 2)} m, ${fixed((yawOf(rotation) * 180) / Math.PI, 0)}°`]];
 }
 
 /** Two standard deviations of x and y about the pose; null without a covariance. */
@@ -134,6 +135,6 @@ export class PointDisplay extends StampedDisplay<PointStamped> {
 
   protected override detail(): string {
     const point = this.message?.point;
-    return point ? `${point.x.toFixed(2)}, ${point.y.toFixed(2)} m` : "";
+    return point ? `${fixed(point.x, 2)}, ${fixed(point.y, 2)} m` : "";
   }
 }

@@ -1,5 +1,6 @@
 /** What the page computes from the robot's motion: footprint, trail, contacts; the frames; the grid; the goal. */
 
+import { fixed } from "../../robot/text";
 import { Display } from "../display";
 import { transformOf, valuesOf, type DiagnosticArray, type Odometry } from "../messages";
 import { Placement } from "../placement";
@@ -77,7 +78,7 @@ export class OdometryDisplay extends Display<Odometry> {
 
   #about(): [string, string][] {
     const { linear, angular } = this.message?.twist.twist ?? { linear: { x: 0, y: 0 }, angular: { z: 0 } };
-    return [["speed", `${linear.x.toFixed(2)} m/s`], ["turn rate", `${angular.z.toFixed(2)} rad/s`]];
+    return [["speed", `${fixed(linear.x, 2)} m/s`], ["turn rate", `${fixed(angular.z, 2)} rad/s`]];
   }
 
   protected override isEmpty(): boolean {
@@ -86,7 +87,7 @@ export class OdometryDisplay extends Display<Odometry> {
 
   protected override detail(): string {
     const { x, y } = this.message?.pose.pose.position ?? { x: 0, y: 0 };
-    return `at ${x.toFixed(2)}, ${y.toFixed(2)} m`;
+    return `at ${fixed(x, 2)}, ${fixed(y, 2)} m`;
   }
 }
 
@@ -142,7 +143,7 @@ export class ContactsDisplay extends Display<DiagnosticArray> {
       const { frame, x_m, y_m, z_m = "0", time_s } = valuesOf(status);
       const place: Vector = [Number(x_m), Number(y_m), Number(z_m)];
       if (frame === undefined || !place.every(Number.isFinite)) return [];
-      const time: [string, string][] = time_s === undefined ? [] : [["at", `${Number(time_s).toFixed(1)} s`]];
+      const time: [string, string][] = time_s === undefined ? [] : [["at", `${fixed(Number(time_s), 1)} s`]];
       return [{ frame, place, about: [["contact", status.message], ...time] }];
     });
   }
@@ -209,11 +210,11 @@ export class GoalDisplay extends Display {
       const sign = { kind: "sign", shape: "goal", pose, sizePx: this.size, colour: this.colour } as const;
       const arrow = { kind: "sign", shape: "arrow", pose, sizePx: 1.6 * this.size, colour: this.colour } as const;
       const [x, y] = pose.translation;
-      const heading = hasHeading ? [["heading", `${((yawOf(pose.rotation) * 180) / Math.PI).toFixed(0)}°`] as const] : [];
+      const heading = hasHeading ? [["heading", `${fixed((yawOf(pose.rotation) * 180) / Math.PI, 0)}°`] as const] : [];
       return {
         frame,
         primitives: hasHeading ? [sign, arrow] : [sign],
-        about: () => [["position", `${x.toFixed(2)}, ${y.toFixed(2)} m`], ...heading],
+        about: () => [["position", `${fixed(x, 2)}, ${fixed(y, 2)} m`], ...heading],
       };
     });
   }
