@@ -153,7 +153,7 @@ def test_panels_display_data_and_control_the_run(person: Person) -> None:
 
 
 @pytest.mark.slow
-@part("sizes")
+@part("sizes", *BROWSERS)
 def test_the_page_fits_every_size_in_both_themes(person: Person) -> None:
     seen = person.seen()
     for name in ("desktop-dark", "tablet-light", "phone-dark", "phone-light"):
@@ -167,7 +167,7 @@ def test_a_thumb_takes_over_and_stops(person: Person) -> None:
 
 
 @pytest.mark.slow
-@part("hang")
+@part("hang", *BROWSERS)
 def test_a_page_that_hangs_receives_the_goal_that_was_sent_meanwhile(
     person: Person,
 ) -> None:
@@ -175,7 +175,7 @@ def test_a_page_that_hangs_receives_the_goal_that_was_sent_meanwhile(
 
 
 @pytest.mark.slow
-@part("keys")
+@part("keys", *BROWSERS)
 def test_space_stops_wherever_the_focus_is(person: Person) -> None:
     seen = person.seen()
     assert [seen[what] for what in ("panel", "tab", "slider")] == [True] * 3
@@ -184,7 +184,7 @@ def test_space_stops_wherever_the_focus_is(person: Person) -> None:
 
 
 @pytest.mark.slow
-@part("files")
+@part("files", *BROWSERS)
 def test_files_are_saved_and_loaded_and_refusals_have_a_reason(person: Person) -> None:
     seen = person.seen()
     header, first = seen["csv"]

@@ -9,11 +9,11 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
-import { launch } from "./launch.mjs";
+import { downloaded, launch } from "./launch.mjs";
 
 const [part, url, executablePath, folder] = process.argv.slice(2);
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const browser = await launch(executablePath);
+const browser = await launch(executablePath, folder);
 const seen = { problems: [], axe: {} };
 
 async function newPage(options) {
@@ -242,6 +242,7 @@ async function keys() {
     await page.locator("#release").click();
     await until(page, () => !navette.robot.isStopped);
   };
+  await page.getByText("Space stops").waitFor(); // the page knows who drives the robot
   await page.evaluate(() => navette.open("displays"));
   await stops("panel");
   await page.getByRole("tab", { name: "Topics" }).first().click();
@@ -274,12 +275,7 @@ async function files() {
   await page.evaluate(() => navette.open("plot", { paths: ["/odom/filtered.twist.twist.angular.z"] }));
   await until(page, () => /\d/.test([...document.querySelectorAll(".plot-value")].at(-1)?.textContent ?? ""));
   await page.waitForTimeout(500);
-  const saved = async (name) => {
-    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name, exact: true }).last().click()]);
-    const path = `${folder}/${download.suggestedFilename()}`;
-    await download.saveAs(path);
-    return path;
-  };
+  const saved = (name) => downloaded(page, folder, () => page.getByRole("button", { name, exact: true }).last().click());
   seen.csv = readFileSync(await saved("Save as CSV"), "utf8").split("\n").slice(0, 2);
   seen.png = [...readFileSync(await saved("Save as PNG")).subarray(0, 4)];
   const menu = () => page.getByRole("button", { name: "Layout" }).first().click();
@@ -296,8 +292,9 @@ async function files() {
   await page.evaluate(() => navette.open("parameters"));
   await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
   const field = page.locator('input[aria-label="/control.acceleration_mps2"]');
-  await field.fill("-5");
-  await field.press("Enter");
+  await field.selectText(); // typed: Firefox reports no change of a text that a script fills in
+  await page.keyboard.type("-5");
+  await page.keyboard.press("Enter");
   await page.getByText("must be >= 0.01").first().waitFor();
   seen.parameter = await field.inputValue();
   await page.evaluate(() => navette.operator.sendGoal({ frame: "nowhere", x: 1, y: 1, yaw: null }));
