@@ -153,12 +153,23 @@ class SlamNode(StageNode):
         self._taken_ns = -(10**18)
         self._newest_ns = 0
         self.is_paused = False
-        is_mapping = params.mode == MAPPING
-        self._set_slam(Slam(params, start, graph=graph, is_mapping=is_mapping))
+        self._begin(start, graph, is_mapping=params.mode == MAPPING)
 
     def continue_map(self, graph: ScanGraph, start: Pose2, *, is_mapping: bool) -> None:
         """Continue a map, or localize in it."""
-        self._set_slam(Slam(self.params, start, graph=graph, is_mapping=is_mapping))
+        self._begin(start, graph, is_mapping=is_mapping)
+
+    def _begin(
+        self, start: Pose2 | None, graph: ScanGraph | None, *, is_mapping: bool
+    ) -> None:
+        slam = Slam(
+            self.params,
+            start,
+            graph=graph,
+            is_mapping=is_mapping,
+            trajectory_length=1,
+        )
+        self._set_slam(slam)
 
     def empty_map(self) -> None:
         """Begin a new map where the robot is."""

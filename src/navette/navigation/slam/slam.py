@@ -1,6 +1,7 @@
 """Simultaneous localisation and mapping with a planar scanner."""
 
 import math
+from collections import deque
 from typing import NamedTuple
 
 import numpy as np
@@ -88,6 +89,7 @@ class Slam:
             the whole map is searched for it.
         graph: a map to continue, or to localise in.
         is_mapping: whether the map grows; otherwise the robot is localised in it.
+        trajectory_length: number of newest poses that are kept; None: all.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class Slam:
         *,
         graph: ScanGraph | None = None,
         is_mapping: bool = True,
+        trajectory_length: int | None = None,
     ) -> None:
         self.params = params
         self.graph = ScanGraph() if graph is None else graph
@@ -111,7 +114,7 @@ class Slam:
         self._finder = LoopFinder(params)
         self._queried = 0  # newest key scan at the last search for loops
         self._motion = MotionModel(params)
-        self._track: list[_Tracked] = []
+        self._track: deque[_Tracked] = deque(maxlen=trajectory_length)
         # The key scan that the newest poses are relative to.
         self._anchor = 0
         self._start = start
@@ -186,7 +189,7 @@ class Slam:
 
     def emptied(self) -> "Slam":
         """Return a SLAM without a map; its first scan is where the robot is."""
-        fresh = Slam(self.params, self._pose)
+        fresh = Slam(self.params, self._pose, trajectory_length=self._track.maxlen)
         fresh._motion = self._motion
         return fresh
 
@@ -213,7 +216,7 @@ class Slam:
         return sum(each.is_robust for each in self.graph.edges)
 
     def trajectory(self) -> list[tuple[int, Pose2]]:
-        """Return stamp (ns) and map_T_base of each scan, as far as known now."""
+        """Return stamp (ns) and map_T_base of each scan kept, as far as known now."""
         return [
             (each.stamp_ns, self.graph.pose(each.key) @ each.key_T_base)
             for each in self._track
@@ -270,7 +273,7 @@ class Slam:
         """Search the whole map for the newest scans, after each new key scan."""
         scout = self._scout
         if scout is None or scout.unmatched_in_a_row:
-            scout = self._scout = Slam(self.params)
+            scout = self._scout = Slam(self.params, trajectory_length=1)
         before = len(scout.graph)
         found = scout.add(
             key.stamp_ns, key.scan, odom, base_T_sensor=key.base_T_sensor, yaw=yaw

@@ -1,6 +1,8 @@
 """The node ``slam``: map → odom, pose, status, map, saved maps."""
 
+import gc
 import math
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -254,3 +256,22 @@ def test_after_a_restart_the_map_begins_at_the_start_again() -> None:
             int((np.asarray(maps.messages[index].data) >= 0).sum()) for index in (0, -1)
         )
         assert last < first
+
+
+def test_a_robot_that_stands_needs_no_more_memory() -> None:
+    """The poses of all scans are kept for a recording's trajectory only."""
+    with GraphHarness() as graph:
+        start(graph)
+        standing = [
+            STEPS[0]._replace(stamp_ns=STEPS[0].stamp_ns + index * 200_000_000)
+            for index in range(300)
+        ]
+        tracemalloc.start()
+        feed(graph, standing[:100])
+        gc.collect()
+        before, _ = tracemalloc.get_traced_memory()
+        feed(graph, standing[100:])
+        gc.collect()
+        after, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert (after - before) / 200 < 250, "bytes per scan"
