@@ -1,3 +1,4 @@
+import { PerspectiveCamera, Vector3 } from "three";
 import { beforeEach, describe, expect, it } from "vitest";
 import { RobotState } from "../src/robot/robot_state";
 import { readCloud } from "../src/scene/cloud_reading";
@@ -10,8 +11,8 @@ import { covarianceEllipse } from "../src/scene/displays/poses";
 import { convexHull, isInside } from "../src/scene/hull";
 import type { OccupancyGrid, PointCloud2 } from "../src/scene/messages";
 import { pick } from "../src/scene/picking";
-import { placeOf, rgba } from "../src/scene/primitives";
-import { unionOf, Viewing } from "../src/scene/viewing";
+import { placeOf, rgba, type Primitive } from "../src/scene/primitives";
+import { FIELD_DEG, unionOf, Viewing } from "../src/scene/viewing";
 import { Theme } from "../src/theme/theme";
 import { apply, fromYaw, IDENTITY, yawOf } from "../src/transforms/transform";
 import { TransformTree } from "../src/transforms/transform_tree";
@@ -70,6 +71,36 @@ describe("displays", () => {
     expect(display("/lidar").status()).toEqual({ level: "ok", text: "2 of 3 rays hit" });
     connection.topics.set("/lidar", { ...connection.topics.get("/lidar")!, type: "std_msgs/msg/String" });
     expect(display("/lidar").status().text).toBe("wrong type: std_msgs/msg/String");
+  });
+
+  const marker = (type: number, more: object = {}): object => ({
+    header, ns: "", id: type, type, action: 0, pose, scale: { x: 2, y: 0.4, z: 0.2 }, color: { r: 1, g: 0, b: 0, a: 1 }, lifetime: { sec: 0, nanosec: 0 },
+    frame_locked: false, points: [], colors: [], text: "", mesh_resource: "", ...more,
+  });
+
+  it("draw arrows of markers with a head, and lists as bodies", () => {
+    connection.addTopic("/markers", "visualization_msgs/msg/MarkerArray");
+    const primitives = (value: object): readonly Primitive[] => {
+      connection.send("/markers", { markers: [{ ...marker(0), action: 3 }, value] });
+      return display("/markers").parts()[0]!.primitives;
+    };
+    const tip = ([, head]: readonly Primitive[]): unknown => head?.kind === "solid" && apply(head.pose, [head.size[0], 0, 0]);
+    expect(tip(primitives(marker(0)))).toEqual([2, 0, 0]);
+    const between = tip(primitives(marker(0, { points: [{ x: 1, y: 1, z: 1 }, { x: 1, y: 4, z: 5 }] }))) as number[];
+    expect(between.map((value) => Number(value.toFixed(6)))).toEqual([1, 4, 5]);
+    const cubes = primitives(marker(6, { points: [{ x: 1, y: 0, z: 0 }, { x: 2, y: 0, z: 0 }] }));
+    expect(cubes.map((each) => each.kind === "solid" && [each.shape, each.pose.translation[0], each.size[0]])).toEqual([["box", 1, 2], ["box", 2, 2]]);
+    expect(primitives(marker(8, { points: [{ x: 1, y: 0, z: 0 }] })).map(({ kind }) => kind)).toEqual(["points"]);
+  });
+
+  it("state which mesh is missing and why", async () => {
+    connection.addTopic("/markers", "visualization_msgs/msg/Marker");
+    connection.send("/markers", marker(10, { mesh_resource: "package://arm/meshes/hand.dae" }));
+    expect(display("/markers").status()).toEqual({ level: "late", text: "1 marker, no mesh hand.dae: not an STL file" });
+    connection.send("/markers", marker(10, { mesh_resource: "package://arm/meshes/hand.stl" }));
+    display("/markers").parts();
+    await Promise.resolve();
+    expect(display("/markers").status().text).toBe("1 marker, no mesh hand.dae: not an STL file, and 1 more");
   });
 
   it("mark all contacts of a run, also those before the page was opened", () => {
@@ -285,51 +316,6 @@ describe("displays", () => {
     expect(cell?.item.part.about?.(cell.primitive, cell.hit)).toContainEqual(["value", "100 (occupied)"]);
     expect(pick(items, above(0.75, 2.25)).some(({ primitive }) => primitive.kind === "raster")).toBe(false);
   });
-
-  it("answer a click with the nearest thing, small ones before large areas, whatever is drawn on top", () => {
-    const line = (y: number, fill?: string): object => ({ kind: "lines", mode: "strip", positions: Float32Array.from([0, y, 0, 5, y, 0]), colour: "#000", widthPx: 2, fill });
-    const wall = { kind: "solid", shape: "box", pose: { translation: [2, 0, 0.5], rotation: fromYaw(0) }, size: [10, 10, 1], colour: "#000" };
-    const robot = { ...wall, size: [0.3, 0.3, 0.3] };
-    const sign = { kind: "sign", shape: "cross", pose: { translation: [4, 0.06, 0], rotation: fromYaw(0) }, sizePx: 14, colour: "#000" };
-    const [near, far] = [line(0.02), line(0.08)];
-    const items = [sign, near, robot, far, wall].map((primitive) => ({ part: { frame: "map", primitives: [primitive] }, fixed_T_part: IDENTITY, opacity: 1 }));
-    const found = (x: number, y: number): unknown[] => pick(items as never, above(x, y)).map(({ primitive }) => primitive);
-    expect(found(1, 0)).toEqual([near, far, wall]);
-    expect(found(4, 0.055)[0]).toBe(sign);
-    expect(found(2, -0.04)).toEqual([robot, near, wall]); // in the robot, 6 pixels beside a line
-    expect(found(2, 0.02)[0]).toBe(near);
-  });
-
-  it("find places within a filled outline, and the edge that closes it", () => {
-    const outline = { kind: "lines", mode: "loop", positions: Float32Array.from([0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0]), colour: "#000", widthPx: 2, fill: "#fff" };
-    const items = [{ part: { frame: "map", primitives: [outline] }, fixed_T_part: IDENTITY, opacity: 1 }];
-    const found = (x: number, y: number): unknown => pick(items as never, above(x, y))[0]?.hit.point;
-    expect(found(1, 1)).toEqual([1, 1, 0]);
-    expect(found(-0.05, 1)).toEqual([0, 1, 0]);
-    expect(found(-0.5, 1)).toBeUndefined();
-  });
-
-  it("answer a click from the side with what is in front", () => {
-    const crate = (y: number, size: number): object => ({ kind: "solid", shape: "box", pose: { translation: [0, y, 0], rotation: fromYaw(0) }, size: [size, size, size], colour: "#000" });
-    const [front, back] = [crate(0, 4), crate(5, 1)];
-    const items = [{ part: { frame: "map", primitives: [back, front] }, fixed_T_part: IDENTITY, opacity: 1 }];
-    const ray: Parameters<typeof pick>[1] = { origin: [0, -20, 0], direction: [0, 1, 0], metresPerPx: 0.01 };
-    expect(pick(items as never, ray).map(({ primitive }) => primitive)).toEqual([front, back]);
-  });
-
-  it("find a body from the side where it is, and not a long wall beside the line of sight", () => {
-    const wall = { kind: "solid", shape: "box", pose: { translation: [0, -10, 0.5], rotation: fromYaw(0) }, size: [20, 0.3, 1], colour: "#000" } as const;
-    const crate = { kind: "solid", shape: "mesh", pose: { translation: [0, 2, 0], rotation: fromYaw(0) }, size: [1, 1, 1], colour: "#000", mesh: { positions: Float32Array.from([-1, -1, 0, 1, -1, 0, 1, 1, 1, -1, 1, 1]) } } as const;
-    const items = [{ part: { frame: "map", primitives: [wall, crate] }, fixed_T_part: IDENTITY, opacity: 1 }];
-    const towards = (y: number): Parameters<typeof pick>[1] => {
-      const length = Math.hypot(20 + y, 20);
-      return { origin: [0, -20, 20], direction: [0, (20 + y) / length, -20 / length], metresPerPx: 0.01 };
-    };
-    const found = (y: number): unknown[] => pick(items as never, towards(y)).map(({ primitive }) => primitive);
-    expect(found(2)).toEqual([crate]);
-    expect(found(-10)).toEqual([wall]);
-    expect(found(-4)).toEqual([]);
-  });
 });
 
 describe("geometry", () => {
@@ -360,6 +346,25 @@ describe("geometry", () => {
     const pixelOf = (metres: number): number => 200 + (metres - x) * scale;
     expect([pixelOf(0), pixelOf(10)]).toEqual([expect.closeTo(72), expect.closeTo(0.93 * 400)]);
     expect(y).toBeCloseTo(5);
+  });
+
+  it("shows the near corners of the known area in 3D, too", () => {
+    for (const [azimuth, elevation] of [[-Math.PI / 2, 0.9], [-0.6, 0.3], [2, 1.5]] as const) {
+      const viewing = new Viewing(() => undefined);
+      Object.assign(viewing.viewpoint, { azimuth, elevation });
+      viewing.fit([-8, -6, 8, 6], { width: 1000, height: 800, coveredLeft: 0, coveredTop: 0 }, true);
+      const { scale } = viewing.viewpoint;
+      const camera = new PerspectiveCamera(FIELD_DEG, 1000 / 800);
+      const farM = 800 / scale / (2 * Math.tan((FIELD_DEG * Math.PI) / 360));
+      camera.up.set(0, 0, 1);
+      camera.position.set(farM * Math.cos(elevation) * Math.cos(azimuth), farM * Math.cos(elevation) * Math.sin(azimuth), farM * Math.sin(elevation));
+      camera.lookAt(0, 0, 0);
+      camera.updateMatrixWorld();
+      for (const [x, y] of [[-8, -6], [8, -6], [8, 6], [-8, 6]] as const) {
+        const place = new Vector3(x, y, 0).project(camera);
+        expect(Math.max(Math.abs(place.x), Math.abs(place.y))).toBeLessThan(1);
+      }
+    }
   });
 
   it("keeps the place under the pointer while zooming, and the robot while following", () => {

@@ -1,7 +1,10 @@
 import { cardPlace } from "../src/workbench/info_card";
 import { beforeEach, describe, expect, it } from "vitest";
 import type { ToolContext } from "../src/tools/tool";
+import type { Goal } from "../src/robot/robot_state";
+import { GoalTool } from "../src/tools/goal";
 import { MeasureTool } from "../src/tools/measure";
+import { fromYaw } from "../src/transforms/transform";
 
 describe("measuring", () => {
   let tool: MeasureTool;
@@ -39,6 +42,53 @@ describe("measuring", () => {
     click(1, 0);
     tool.cancel();
     expect(tool.overlay()).toEqual([]);
+  });
+});
+
+describe("the goal", () => {
+  const sent: Goal[] = [];
+  let goal: Goal | null;
+  const tool = new GoalTool({
+    scene: {
+      fixedFrame: "odom",
+      connection: { playback: null },
+      transforms: { lookUp: () => ({ translation: [10, 0, 0], rotation: fromYaw(0) }) },
+      robot: { isSubscribed: () => true, get goal() { return goal; } },
+      displays: { goal: { isVisible: true } },
+      viewing: { viewpoint: { scale: 50 } },
+      invalidate: () => undefined,
+    },
+    operator: { sendGoal: (to: Goal) => sent.push(to) },
+    theme: { colour: () => "#000000" },
+  } as unknown as ToolContext);
+
+  beforeEach(() => {
+    sent.length = 0;
+    goal = { frame: "map", x: 1, y: 2, yaw: 1.5 };
+  });
+
+  it("is moved by a drag from its mark, and keeps its heading", () => {
+    expect(tool.canHold([11.1, 2.1])).toBe(true);
+    expect(tool.beginDrag([11.1, 2.1])).toBe(true);
+    tool.drag([12, 3]);
+    expect(tool.overlay().map((each) => each.kind === "sign" && each.pose.translation)).toEqual([[12, 3, 0], [12, 3, 0]]);
+    tool.endDrag([13, 4]);
+    expect(sent).toEqual([{ frame: "odom", x: 13, y: 4, yaw: expect.closeTo(1.5) as number }]);
+    expect(tool.overlay()).toEqual([]);
+  });
+
+  it("leaves drags elsewhere to the view", () => {
+    expect(tool.beginDrag([11.5, 2])).toBe(false);
+    goal = null;
+    expect(tool.beginDrag([11, 2])).toBe(false);
+  });
+
+  it("stays where it is when the drag is dropped", () => {
+    tool.beginDrag([11, 2]);
+    tool.drag([15, 2]);
+    tool.cancel();
+    tool.endDrag([15, 2]);
+    expect(sent).toEqual([]);
   });
 });
 

@@ -37,6 +37,12 @@ export interface DisplayStatus {
   readonly text: string;
 }
 
+/** A status with what is missing from an otherwise drawn message. */
+export function withProblem(status: DisplayStatus, problem: string): DisplayStatus {
+  if (problem === "" || (status.level !== "ok" && status.level !== "empty")) return status;
+  return { level: "late", text: status.text ? `${status.text}, ${problem}` : problem };
+}
+
 /** Names, defaults and what the settings mean. */
 export interface DisplayTraits {
   readonly title: string;

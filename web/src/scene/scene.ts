@@ -190,7 +190,7 @@ export class Scene implements Surroundings {
     const [width, height] = [this.element.clientWidth || 1, this.element.clientHeight || 1];
     if (mode === "follow" && base) this.viewing.centreOn(base.translation[0], base.translation[1]);
     const known = mode === "fit" ? this.known() : null;
-    if (known) this.viewing.fit(known, { width, height, ...this.covered });
+    if (known) this.viewing.fit(known, { width, height, ...this.covered }, this.#isThreeDimensional);
     const reach = this.#isThreeDimensional ? 1.6 : 0.5;
     // A few lines more than are visible, so that a small move needs no new ones.
     const step = this.displays.grid.stepM;

@@ -3,9 +3,9 @@
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, DataTexture,
   DirectionalLight, DoubleSide, Group, Line, LineBasicMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, Matrix4, NearestFilter, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Quaternion, Scene, ShapeUtils,
+  MeshLambertMaterial, Matrix4, NearestFilter, Object3D, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Quaternion, Scene, ShapeUtils,
   SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
-  type Material, type Object3D, type Texture,
+  type Material, type Texture,
 } from "three";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
@@ -17,8 +17,8 @@ import { PointLayer } from "./point_layer";
 import { rgba, type Colour, type Label, type Lines, type Points as PointSet, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import type { DrawItem, Ray, Renderer, Viewpoint } from "./renderer";
 import { isSoftwareGl } from "./software_gl";
+import { FIELD_DEG } from "./viewing";
 
-const FIELD_DEG = 45;
 /** Slightly above what was drawn before, so that flat things do not flicker through each other. */
 const LAYER_M = 0.002;
 /** Pixels per metre at which signs have their size; they scale with the view. */
@@ -240,7 +240,7 @@ const LINEAR = Uint8Array.from({ length: 256 }, (_, byte) => Math.round(255 * ne
 
 /** Lines of more than a pixel are strips of triangles: WebGL draws its own lines one pixel wide. */
 function linesOf({ positions, mode, colour, fill, widthPx }: Lines): Built {
-  const group = new Group();
+  const group = new Object3D(); // a Group within a group would be drawn first
   const materials: Material[] = [];
   if (widthPx > 1.2 && positions.length >= 6) {
     const material = new LineMaterial({ linewidth: widthPx });
@@ -344,7 +344,7 @@ function labelOf({ position: [x, y, z], text, colour, sizePx }: Label): Built {
   const sprite = new Sprite(material);
   sprite.center.set(0.5, -0.1);
   sprite.scale.set(canvas.width / canvas.height, 1, 1);
-  const holder = new Group();
+  const holder = new Object3D();
   holder.add(sprite);
   return wrap(holder, { translation: [x, y, z], rotation: [0, 0, 0, 1] }, [material], 1.5 * sizePx);
 }

@@ -14,6 +14,9 @@ const MARGIN_PX = 10;
 /** Part of the way to the fitted view that a frame goes. */
 const EASE = 0.2;
 
+/** Angle of view of the camera in 3D, from top to bottom. */
+export const FIELD_DEG = 45;
+
 /** Fit and follow go on until the view is moved. */
 export type ViewMode = "fit" | "follow" | "free";
 
@@ -84,13 +87,16 @@ export class Viewing {
   }
 
   /** Move towards a view of the box; at once the first time. */
-  fit([left, low, right, high]: Box, { width, height, coveredLeft, coveredTop }: Room): void {
+  fit(box: Box, { width, height, coveredLeft, coveredTop }: Room, isThreeDimensional = false): void {
+    const [left, low, right, high] = box;
     const { viewpoint } = this;
     const share = this.#isPlaced ? EASE : 1;
     this.#isPlaced = true;
     const [sidePx, endPx] = [MARGIN * width, MARGIN * height];
     const [leftPx, topPx] = [Math.max(sidePx, coveredLeft + MARGIN_PX), Math.max(endPx, coveredTop + MARGIN_PX)];
-    const most = Math.min((width - leftPx - sidePx) / Math.max(right - left, LEAST_M), (height - topPx - endPx) / Math.max(high - low, LEAST_M));
+    const free: [number, number] = [width - leftPx - sidePx, height - topPx - endPx];
+    const size: [number, number] = [Math.max(right - left, LEAST_M), Math.max(high - low, LEAST_M)];
+    const most = isThreeDimensional ? this.#perspectiveScale(size, free, height) : Math.min(free[0] / size[0], free[1] / size[1]);
     const scale = Math.min(HIGHEST_SCALE, Math.max(LOWEST_SCALE, most));
     const ratio = scale / viewpoint.scale;
     const [middleX, middleY] = [(left + right) / 2 - (leftPx - sidePx) / 2 / scale, (low + high) / 2 + (topPx - endPx) / 2 / scale];
@@ -99,6 +105,16 @@ export class Viewing {
     viewpoint.scale *= ratio ** share;
     viewpoint.centre = [viewpoint.centre[0] + dx * share, viewpoint.centre[1] + dy * share];
     this.invalidate();
+  }
+
+  /** Pixels per metre in the middle with which the near edge of an area on the ground is visible, too. */
+  #perspectiveScale([x, y]: readonly [number, number], [freeWidth, freeHeight]: readonly [number, number], heightPx: number): number {
+    const { azimuth, elevation } = this.viewpoint;
+    const [alongX, alongY] = [Math.abs(Math.cos(azimuth)), Math.abs(Math.sin(azimuth))];
+    const [wide, deep] = [x * alongY + y * alongX, x * alongX + y * alongY];
+    const eyePx = heightPx / Math.tan((FIELD_DEG * Math.PI) / 360) / 2;
+    const nearer = (deep * Math.cos(elevation)) / 2 / eyePx;
+    return 1 / Math.max(wide / freeWidth + nearer, (deep * Math.sin(elevation)) / freeHeight + nearer);
   }
 
   /** The next fit comes at once: what is drawn is another world. */

@@ -31,6 +31,11 @@ export abstract class Tool {
 
   abstract tap(place: Place, px: number, py: number): void;
 
+  /** Whether a drag that begins at a place moves something that is drawn there. */
+  canHold(_place: Place): boolean {
+    return false;
+  }
+
   beginDrag(_place: Place): boolean {
     return false;
   }

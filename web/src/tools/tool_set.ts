@@ -101,6 +101,7 @@ export class ToolSet implements GestureTarget {
   hover(px: number | null, py: number | null): void {
     const place = px === null || py === null ? null : this.scene.groundAt(px, py);
     this.pointer = place && [place[0], place[1]];
+    this.scene.element.classList.toggle("can-hold", this.pointer !== null && this.#chosen.canHold(this.pointer));
     this.#changed();
   }
 

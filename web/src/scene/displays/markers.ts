@@ -1,9 +1,10 @@
 /** visualization_msgs Marker and MarkerArray. */
 
-import { Display } from "../display";
+import { Display, withProblem, type DisplayStatus } from "../display";
 import { transformOf, type Marker } from "../messages";
-import { colourOf, type Colour, type Part, type Primitive } from "../primitives";
+import { colourOf, type Colour, type Mesh, type Part, type Primitive } from "../primitives";
 import { nanosecondsOf } from "../../transforms/stamp";
+import { apply, fromRollPitchYaw, type Transform, type Vector } from "../../transforms/transform";
 import { Placement } from "../placement";
 import { MeshStore } from "./meshes";
 
@@ -11,6 +12,11 @@ const ARROW = 0, CUBE = 1, SPHERE = 2, CYLINDER = 3, LINE_STRIP = 4, LINE_LIST =
 const POINTS = 8, TEXT = 9, MESH = 10, TRIANGLES = 11;
 const DELETE = 2, DELETE_ALL = 3;
 const MOST_MARKERS = 5000;
+/** Of a list that are drawn as bodies rather than points. */
+const MOST_BODIES = 300;
+/** Length of an arrow's head, of the arrow that a pose and a scale give. */
+const HEAD_SHARE = 0.25;
+const HEAD_SIDES = 12;
 
 interface Kept {
   readonly marker: Marker;
@@ -81,7 +87,7 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
     const size = [scale.x, scale.y, scale.z] as const;
     switch (marker.type) {
       case ARROW:
-        return [arrow(marker, colour)];
+        return arrow(marker, colour);
       case CUBE:
         return [{ kind: "solid", shape: "box", pose, size, colour }];
       case SPHERE:
@@ -96,10 +102,9 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
       }
       case CUBE_LIST:
       case SPHERE_LIST:
-      case POINTS: {
-        const each = marker.colors.length === points.length ? { colours: coloursOf(marker) } : {};
-        return points.length > 0 ? [{ kind: "points", positions: placed(marker), ...each, colour, sizePx: 4 }] : [];
-      }
+        return points.length <= MOST_BODIES ? bodies(marker, marker.type === CUBE_LIST ? "box" : "sphere", colour) : dots(marker, colour);
+      case POINTS:
+        return dots(marker, colour);
       case TEXT:
         return [{ kind: "label", position: pose.translation, text: marker.text.slice(0, 200), colour, sizePx: 12 }];
       case MESH: {
@@ -115,30 +120,72 @@ export class MarkersDisplay extends Display<Marker | { markers: Marker[] }> {
     }
   }
 
+  override status(): DisplayStatus {
+    return withProblem(super.status(), this.#meshes.problem);
+  }
+
   protected override detail(): string {
     return this.#markers.size === 1 ? "1 marker" : `${this.#markers.size} markers`;
   }
 }
 
-/** From its pose along x, or from its first point to its second. */
-function arrow(marker: Marker, colour: Colour): Primitive {
-  const pose = transformOf(marker.pose);
-  const [from, to] = marker.points;
-  if (from && to) return { kind: "lines", positions: placed(marker), mode: "strip", colour, widthPx: 3 };
-  return { kind: "solid", shape: "box", pose: shifted(pose, marker.scale.x / 2), size: [marker.scale.x, marker.scale.y, marker.scale.z], colour };
+/** From its pose along x, or from its first point to its second: a shaft and a head. */
+function arrow(marker: Marker, colour: Colour): Primitive[] {
+  const { scale } = marker;
+  if (marker.points.length < 2) {
+    return arrowAt(transformOf(marker.pose), [scale.x, scale.y, scale.z], HEAD_SHARE * scale.x, 0.6, colour);
+  }
+  const [x, y, z, toX, toY, toZ] = placed(marker) as unknown as [number, number, number, number, number, number];
+  const [dx, dy, dz] = [toX - x, toY - y, toZ - z];
+  const lengthM = Math.hypot(dx, dy, dz);
+  const rotation = fromRollPitchYaw(0, -Math.atan2(dz, Math.hypot(dx, dy)), Math.atan2(dy, dx));
+  // The scale is the diameters of shaft and head, and the length of the head.
+  const shaft = scale.y > 0 ? scale.x / scale.y : 0.5;
+  return arrowAt({ translation: [x, y, z], rotation }, [lengthM, scale.y, scale.y], scale.z > 0 ? Math.min(lengthM, scale.z) : HEAD_SHARE * lengthM, shaft, colour);
 }
 
-function shifted(pose: ReturnType<typeof transformOf>, forwardM: number): ReturnType<typeof transformOf> {
-  const [x, y, z] = pose.translation;
-  const [qx, qy, qz, qw] = pose.rotation;
-  return {
-    translation: [
-      x + forwardM * (1 - 2 * (qy * qy + qz * qz)),
-      y + forwardM * 2 * (qx * qy + qz * qw),
-      z + forwardM * 2 * (qx * qz - qy * qw),
-    ],
-    rotation: pose.rotation,
-  };
+/** An arrow along x of a pose, from its tail; `shaft`: its share of the head's diameter. */
+function arrowAt(pose: Transform, [x, y, z]: Vector, headM: number, shaft: number, colour: Colour): Primitive[] {
+  const shaftM = x - headM;
+  const middle = { ...pose, translation: apply(pose, [shaftM / 2, 0, 0]) };
+  const neck = { ...pose, translation: apply(pose, [shaftM, 0, 0]) };
+  return [
+    { kind: "solid", shape: "box", pose: middle, size: [shaftM, shaft * y, shaft * z], colour },
+    { kind: "solid", shape: "mesh", pose: neck, size: [headM, y, z], colour, mesh: HEAD },
+  ];
+}
+
+/** A cone along x, of length and diameter one. */
+const HEAD: Mesh = {
+  positions: Float32Array.from(
+    Array.from({ length: HEAD_SIDES }, (_, side) => {
+      const rim = (index: number): Vector => {
+        const angle = (2 * Math.PI * index) / HEAD_SIDES;
+        return [0, Math.cos(angle) / 2, Math.sin(angle) / 2];
+      };
+      return [...rim(side), ...rim(side + 1), 1, 0, 0, ...rim(side + 1), ...rim(side), 0, 0, 0];
+    }).flat(),
+  ),
+};
+
+function dots(marker: Marker, colour: Colour): Primitive[] {
+  const { colors, points } = marker;
+  const each = colors.length === points.length ? { colours: coloursOf(marker) } : {};
+  return points.length > 0 ? [{ kind: "points", positions: placed(marker), ...each, colour, sizePx: 4 }] : [];
+}
+
+function bodies(marker: Marker, shape: "box" | "sphere", colour: Colour): Primitive[] {
+  const { scale, colors, points } = marker;
+  const positions = placed(marker);
+  const { rotation } = transformOf(marker.pose);
+  return points.map((_, index) => {
+    const own = colors.length === points.length ? colors[index] : undefined;
+    const translation: Vector = [positions[3 * index]!, positions[3 * index + 1]!, positions[3 * index + 2]!];
+    return {
+      kind: "solid", shape, pose: { translation, rotation }, size: [scale.x, scale.y, scale.z],
+      colour: own ? colourOf(own.r, own.g, own.b, own.a) : colour,
+    };
+  });
 }
 
 /** The marker's points in the frame of its header. */

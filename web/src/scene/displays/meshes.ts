@@ -5,6 +5,8 @@ import type { Mesh } from "../primitives";
 
 export class MeshStore {
   readonly #meshes = new Map<string, Mesh | null>();
+  /** URI → why it is missing. */
+  readonly #missing = new Map<string, string>();
 
   constructor(
     private readonly connection: Connection,
@@ -16,15 +18,26 @@ export class MeshStore {
     const known = this.#meshes.get(uri);
     if (known !== undefined) return known;
     this.#meshes.set(uri, null);
-    if (!/\.stl$/i.test(uri)) return null;
+    if (!/\.stl$/i.test(uri)) {
+      this.#missing.set(uri, "not an STL file");
+      return null;
+    }
     this.connection.fetchAsset(uri).then(
       (bytes) => {
         this.#meshes.set(uri, readStl(bytes));
         this.onLoad();
       },
-      () => undefined, // stays away: the display shows what it has
+      (error: unknown) => this.#missing.set(uri, error instanceof Error ? error.message : String(error)),
     );
     return null;
+  }
+
+  /** Which meshes are missing and why; empty if none is. */
+  get problem(): string {
+    const [first] = this.#missing;
+    if (!first) return "";
+    const more = this.#missing.size - 1;
+    return `no mesh ${first[0].split("/").at(-1) ?? ""}: ${first[1]}${more > 0 ? `, and ${more} more` : ""}`;
   }
 }
 

@@ -1,6 +1,6 @@
 /** Bodies from a URDF in a std_msgs/String: the robot's links, or the world's shapes. */
 
-import { Display, type DisplayTraits, type Surroundings } from "../display";
+import { Display, withProblem, type DisplayStatus, type DisplayTraits, type Surroundings } from "../display";
 import { faded, type Part, type Primitive, colourOf } from "../primitives";
 import { fromRollPitchYaw, type Transform, type Vector } from "../../transforms/transform";
 import { MeshStore } from "./meshes";
@@ -59,6 +59,10 @@ export class ModelDisplay extends Display<{ data: string }> {
     if (shape !== "mesh") return { kind: "solid", shape, pose, size, colour };
     const mesh = this.#meshes.get(uri);
     return mesh && { kind: "solid", shape, pose, size, colour, mesh };
+  }
+
+  override status(): DisplayStatus {
+    return withProblem(super.status(), this.#meshes.problem);
   }
 
   protected override detail(): string {
