@@ -161,6 +161,14 @@ def test_the_page_fits_every_size_in_both_themes(person: Person) -> None:
 
 
 @pytest.mark.slow
+@part("access")
+def test_axe_finds_nothing_serious_in_any_panel(person: Person) -> None:
+    seen = person.seen()
+    kinds = {each.split()[1] for each in seen["axe"]}
+    assert seen["portrait"] == seen["landscape"] == len(kinds), "all panels"
+
+
+@pytest.mark.slow
 @part("touch")
 def test_a_thumb_takes_over_and_stops(person: Person) -> None:
     person.seen()

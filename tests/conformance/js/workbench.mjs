@@ -2,7 +2,7 @@
 // run control, sizes and themes, a thumb on the stick, a page that hangs, keys in panels,
 // files that are saved and loaded, a server that ends and returns.
 //
-//   node workbench.mjs goals|panels|sizes|touch|hang|keys|files|restart|offline|measure http://127.0.0.1:PORT BROWSER FOLDER
+//   node workbench.mjs goals|panels|sizes|access|touch|hang|keys|files|restart|offline|measure http://127.0.0.1:PORT BROWSER FOLDER
 //
 // Prints what the page displays, and what axe finds; the parts `restart` and `offline` print
 // "end" or "start" for the server and wait for a line on their input.
@@ -40,6 +40,7 @@ async function picture(page, name) {
   seen.problems.length = before;
 }
 
+const PANELS = ["displays", "topics", "nodes", "image", "raw", "plot", "parameters", "log", "graph", "tree", "diagnostics", "run", "report", "frames"];
 const until = (page, check, argument, timeout = 90_000) => page.waitForFunction(check, argument, { timeout, polling: 100 });
 const desktop = () => newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
 
@@ -172,6 +173,25 @@ async function sizes() {
     if (await other.evaluate(() => { const { scrollHeight, clientHeight } = document.querySelector("#help"); return scrollHeight > clientHeight + 1; })) seen.problems.push(`${name}: the hint is cut off`);
     await picture(other, name);
     await other.context().close();
+  }
+}
+
+async function access() {
+  // Every panel on a large screen and on phones, in both themes.
+  for (const [name, width, height] of [["desktop", 1440, 900], ["portrait", 360, 740], ["landscape", 740, 360]]) {
+    const page = await newPage({ viewport: { width, height }, colorScheme: "light", hasTouch: width < 900 });
+    for (const kind of PANELS) {
+      await page.evaluate((id) => navette.open(id), kind);
+      await page.waitForTimeout(400);
+      for (const theme of ["light", "dark"]) {
+        await page.evaluate((choice) => navette.theme.choose(choice), theme);
+        seen.axe[`${name} ${kind} ${theme}`] = await serious(page);
+      }
+      const over = await page.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]);
+      if (Math.max(...over) > 0) seen.problems.push(`${name} ${kind}: scrolls`);
+    }
+    seen[name] = await page.evaluate(() => document.querySelectorAll(".phone-tabs [data-kind]").length);
+    await page.context().close();
   }
 }
 
@@ -368,7 +388,7 @@ async function measure() {
 }
 
 try {
-  await { goals, panels, sizes, touch, hang, keys, files, restart, offline, measure }[part]();
+  await { goals, panels, sizes, access, touch, hang, keys, files, restart, offline, measure }[part]();
   console.log(JSON.stringify(seen));
 } finally {
   await browser.close();

@@ -24,9 +24,9 @@ class DiagnosticsPanel implements PanelInstance {
   readonly #statuses = new Map<string, Status>();
   readonly #open = new Set<string>();
   readonly #nodes = h("ul", { class: "diagnostics-nodes" });
-  readonly #nodesTitle = h("h3", {}, "Nodes");
+  readonly #nodesTitle = h("h2", {}, "Nodes");
   readonly #list = h("div", { class: "diagnostics-list" });
-  readonly #listTitle = h("h3", {}, "Reports");
+  readonly #listTitle = h("h2", {}, "Reports");
   readonly #empty = emptyState("diagnostics", "Nothing to report", "States of nodes and /diagnostics appear here.");
   readonly #ends: Dispose[] = [];
   readonly #topics = new Map<string, Dispose>();
@@ -35,7 +35,7 @@ class DiagnosticsPanel implements PanelInstance {
     container: HTMLElement,
     private readonly context: PanelContext,
   ) {
-    container.append(h("div", { class: "panel" }, h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Diagnostics" },
+    container.append(h("div", { class: "panel diagnostics" }, h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Diagnostics" },
       this.#nodesTitle, this.#nodes, this.#listTitle, this.#list, this.#empty.element)));
     this.#draw();
   }

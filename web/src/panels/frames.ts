@@ -25,7 +25,7 @@ class FramesPanel implements PanelInstance {
     container: HTMLElement,
     private readonly context: PanelContext,
   ) {
-    container.append(h("div", { class: "panel frames" }, h("div", { class: "body" }, this.#list, this.#empty.element)));
+    container.append(h("div", { class: "panel frames" }, h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Frames" }, this.#list, this.#empty.element)));
     this.#end = context.transforms.onStructure(() => {
       if (this.#stop) this.#build();
     });

@@ -10,9 +10,11 @@ import { type PanelContext, type PanelInstance, registerPanel } from "./panel";
 
 const WIDTH = 132;
 const HEIGHT = 30;
-const COLUMN = 200;
+const COLUMN = 176;
 const ROW = 50;
 const MARGIN = 12;
+/** Text of 12 px remains readable. */
+const LEAST_SCALE = 0.9;
 
 class GraphPanel implements PanelInstance {
   readonly #drawing = h("div", { class: "graph-drawing" });
@@ -68,7 +70,7 @@ class GraphPanel implements PanelInstance {
     const picture = this.#picture(layout, edges, loose, states);
     // Fitted to the panel, but not below a size at which names are readable.
     const width = Number(picture.getAttribute("width"));
-    picture.style.width = `clamp(${Math.round(0.7 * width)}px, 100%, ${width}px)`;
+    picture.style.width = `clamp(${Math.round(LEAST_SCALE * width)}px, 100%, ${width}px)`;
     this.#drawing.replaceChildren(picture);
     this.#mark();
   };

@@ -2,7 +2,7 @@
 
 import "./log.css";
 import type { Dispose } from "../connection/connection";
-import { nanosecondsOf, type Stamp } from "../transforms/stamp";
+import type { LogEntry } from "../robot/log_history";
 import { h, setText } from "../ui/dom";
 import { nextFrame } from "../ui/frames";
 import { icon } from "../ui/icons";
@@ -10,25 +10,6 @@ import { emptyState } from "./empty";
 import { download, stampText } from "./format";
 import { type PanelContext, type PanelInstance, registerPanel } from "./panel";
 
-interface LogMessage {
-  stamp: Stamp;
-  level: number;
-  name: string;
-  msg: string;
-  file: string;
-  function: string;
-  line: number;
-}
-
-interface Entry {
-  readonly stampNs: bigint;
-  readonly level: number;
-  readonly node: string;
-  readonly text: string;
-  readonly place: string;
-}
-
-const MOST_KEPT = 5000;
 const MOST_SHOWN = 500;
 const LEVELS = [
   { least: 10, name: "Debug", short: "D" },
@@ -39,7 +20,6 @@ const LEVELS = [
 ] as const;
 
 class LogPanel implements PanelInstance {
-  #entries: Entry[] = [];
   readonly #list = h("ol", { class: "log-list" });
   readonly #body: HTMLElement;
   readonly #empty = emptyState("log", "No log lines", "Nodes write here with their logger.");
@@ -53,13 +33,12 @@ class LogPanel implements PanelInstance {
   #isVisible = false;
   readonly #ends: Dispose[] = [];
   #shownUpTo = 0;
-  #total = 0;
 
   constructor(
     container: HTMLElement,
     private readonly context: PanelContext,
   ) {
-    const { settings, connection } = context;
+    const { settings, log } = context;
     const again = (): void => {
       settings.set("level", Number(this.#level.value));
       settings.set("node", this.#node.value);
@@ -77,12 +56,10 @@ class LogPanel implements PanelInstance {
     this.#latest = h("button", { class: "log-latest", hidden: true, onclick: () => this.#follow() }, icon("down"), "Newest");
     this.#body = h("div", { class: "body log-body", tabindex: "0", role: "region", "aria-label": "Log" }, this.#list, this.#empty.element);
     this.#body.addEventListener("scroll", () => this.#onScroll());
-    const clear = h("button", { class: "bare", title: "Clear", "aria-label": "Clear", onclick: () => this.#clear() }, icon("close"));
+    const clear = h("button", { class: "bare", title: "Clear", "aria-label": "Clear", onclick: () => log.clear() }, icon("close"));
     const save = h("button", { class: "bare", title: "Save as text", "aria-label": "Save as text", onclick: () => this.#save() }, icon("download"));
     container.append(h("div", { class: "panel log" }, h("div", { class: "bar one-row" }, this.#level, this.#node, this.#text, this.#count, save, clear), this.#body, this.#latest));
-    // Also while hidden: what was logged meanwhile must be there. Lines are few and small.
-    this.#ends.push(connection.subscribe<LogMessage>("/rosout", { every: true }, ({ value }) => this.#add(value)));
-    this.#ends.push(connection.on("reset", () => context.connection.playback && this.#clear()));
+    this.#ends.push(log.onChange(() => this.#onChange()));
     this.#redraw();
   }
 
@@ -95,13 +72,9 @@ class LogPanel implements PanelInstance {
     for (const end of this.#ends) end();
   };
 
-  #add({ stamp, level, name, msg, file, function: where, line }: LogMessage): void {
-    const stampNs = nanosecondsOf(stamp);
-    this.#entries.push({ stampNs, level, node: name, text: msg, place: file ? `${file}:${line} ${where}` : "" });
-    this.#total += 1;
-    if (this.#entries.length > MOST_KEPT + 500) this.#entries.splice(0, 500);
-    this.#addNode(name);
-    if (this.#isVisible) nextFrame(this.#append);
+  #onChange(): void {
+    if (this.context.log.entries.length === 0) this.#redraw();
+    else if (this.#isVisible) nextFrame(this.#append);
   }
 
   #addNode(name: string): void {
@@ -111,7 +84,7 @@ class LogPanel implements PanelInstance {
     this.#node.add(new Option(name, name), after ?? null);
   }
 
-  #matches(entry: Entry): boolean {
+  #matches(entry: LogEntry): boolean {
     const words = this.#text.value.toLowerCase();
     return entry.level >= Number(this.#level.value) && (!this.#node.value || entry.node === this.#node.value)
       && (!words || entry.text.toLowerCase().includes(words));
@@ -119,24 +92,27 @@ class LogPanel implements PanelInstance {
 
   #redraw(): void {
     this.#list.replaceChildren();
-    this.#shownUpTo = this.#total - this.#entries.length;
+    const { log } = this.context;
+    this.#shownUpTo = log.total - log.entries.length;
     this.#append();
     this.#follow();
   }
 
   /** Append the lines since the last time. */
   readonly #append = (): void => {
-    const first = this.#total - this.#entries.length;
-    const fresh = this.#entries.slice(Math.max(0, this.#shownUpTo - first)).filter((entry) => this.#matches(entry));
-    this.#shownUpTo = this.#total;
+    const { entries, total } = this.context.log;
+    const added = entries.slice(Math.max(0, this.#shownUpTo - (total - entries.length)));
+    this.#shownUpTo = total;
+    for (const { node } of added) this.#addNode(node);
+    const fresh = added.filter((entry) => this.#matches(entry));
     for (const entry of fresh.slice(-MOST_SHOWN)) this.#list.append(lineOf(entry));
     while (this.#list.children.length > MOST_SHOWN) this.#list.firstChild!.remove();
     const isEmpty = this.#list.children.length === 0;
     this.#empty.element.hidden = !isEmpty;
     this.#list.hidden = isEmpty;
-    if (this.#entries.length > 0) this.#empty.set("Nothing matches", "No line has this level, node and text.");
+    if (entries.length > 0) this.#empty.set("Nothing matches", "No line has this level, node and text.");
     else this.#empty.set("No log lines", "Nodes write here with their logger.");
-    setText(this.#count, this.#entries.length > 0 ? String(this.#entries.length) : "");
+    setText(this.#count, entries.length > 0 ? String(entries.length) : "");
     if (this.#follows) this.#body.scrollTop = this.#body.scrollHeight;
     else this.#latest.hidden = fresh.length === 0 && this.#latest.hidden;
   };
@@ -153,13 +129,8 @@ class LogPanel implements PanelInstance {
     if (this.#follows) this.#latest.hidden = true;
   }
 
-  #clear(): void {
-    this.#entries = [];
-    this.#redraw();
-  }
-
   #save(): void {
-    const lines = this.#entries.filter((entry) => this.#matches(entry)).map((entry) => `${stampText(entry.stampNs)} ${levelOf(entry.level).name.toUpperCase()} [${entry.node}] ${entry.text}`);
+    const lines = this.context.log.entries.filter((entry) => this.#matches(entry)).map((entry) => `${stampText(entry.stampNs)} ${levelOf(entry.level).name.toUpperCase()} [${entry.node}] ${entry.text}`);
     download("navette-log.txt", `${lines.join("\n")}\n`, "text/plain");
     this.context.announce(`${lines.length} lines saved`);
   }
@@ -169,7 +140,7 @@ function levelOf(level: number): (typeof LEVELS)[number] {
   return [...LEVELS].reverse().find(({ least }) => level >= least) ?? LEVELS[0];
 }
 
-function lineOf(entry: Entry): HTMLElement {
+function lineOf(entry: LogEntry): HTMLElement {
   const level = levelOf(entry.level);
   return h("li", { class: `log-${level.name.toLowerCase()}`, title: entry.place || null },
     h("time", {}, stampText(entry.stampNs)), h("abbr", { title: level.name }, level.short), h("span", { class: "log-node" }, entry.node), h("span", { class: "log-text" }, entry.text));

@@ -26,7 +26,7 @@ class NodesPanel implements PanelInstance {
     container: HTMLElement,
     private readonly context: PanelContext,
   ) {
-    container.append(h("div", { class: "panel nodes" }, h("div", { class: "bar" }, this.#count), h("div", { class: "body" }, this.#list, this.#empty.element)));
+    container.append(h("div", { class: "panel nodes" }, h("div", { class: "bar" }, this.#count), h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Nodes" }, this.#list, this.#empty.element)));
     this.#end = context.connection.on("nodes", () => this.#draw());
   }
 
@@ -56,7 +56,9 @@ class NodesPanel implements PanelInstance {
 
 function drawNode(item: HTMLElement, { name, state, since }: NodeReport): void {
   if (item.className !== state) item.className = state;
-  setText(item.children[1]!, name);
+  const code = item.children[1]!;
+  // Long names break at their words.
+  if (code.textContent !== name) code.replaceChildren(...name.split(/(?<=[_/])/).flatMap((word) => [word, h("wbr")]));
   const notes = { silent: `no response for ${ageText(since)}`, gone: `gone for ${ageText(since)}`, unknown: "state unknown", alive: "" };
   setText(item.children[2]!, notes[state]);
   item.title = MEANING[state];

@@ -1,6 +1,7 @@
 /** What a panel is, and what it gets. Panels register themselves; the workbench creates them. */
 
 import type { Connection, Dispose } from "../connection/connection";
+import type { LogHistory } from "../robot/log_history";
 import type { Theme } from "../theme/theme";
 import type { TransformTree } from "../transforms/transform_tree";
 
@@ -14,6 +15,7 @@ export interface PanelContext {
   readonly connection: Connection;
   readonly transforms: TransformTree;
   readonly theme: Theme;
+  readonly log: LogHistory;
   readonly settings: Settings;
   /** Show another panel; a second call focuses it. */
   open(panelId: string, settings?: Record<string, unknown>): void;

@@ -17,6 +17,8 @@ const COLOURS = ["thread", "laser", "mark", "good", "sea", "wait", "bad", "trail
 const SPANS_S = [10, 30, 60, 300, 1800];
 const DRAW_HZ = 10;
 const LEAST_SPAN = 1e-6;
+/** What a filter leaves of zero is zero to a reader; files keep it. */
+const LEAST_VALUE = 1e-12;
 
 interface Curve {
   readonly path: FieldPath;
@@ -214,7 +216,7 @@ export class PlotPanel implements PanelInstance {
     const index = this.#plot?.cursor.idx;
     this.#curves.forEach((curve, column) => {
       const at = index === null || index === undefined ? curve.samples.lastValue : this.#plot!.data[column + 1]![index];
-      setText(curve.value, typeof at === "number" ? numberText(at, 5) : curve.samples.length === 0 ? this.#whyEmpty(curve) : "–");
+      setText(curve.value, typeof at === "number" ? numberText(Math.abs(at) < LEAST_VALUE ? 0 : at, 5) : curve.samples.length === 0 ? this.#whyEmpty(curve) : "–");
     });
   }
 

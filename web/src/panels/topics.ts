@@ -18,6 +18,9 @@ interface Row {
   readonly element: HTMLTableRowElement;
   readonly type: HTMLElement;
   readonly rate: HTMLElement;
+  readonly hz: HTMLElement;
+  /** The bandwidth once more, where the panel is too narrow for its column. */
+  readonly below: HTMLElement;
   readonly bandwidth: HTMLElement;
   readonly ends: HTMLElement;
   topic: Topic;
@@ -41,7 +44,7 @@ class TopicsPanel implements PanelInstance {
     private readonly connection: Connection = context.connection,
   ) {
     this.#filter = h("input", { type: "search", placeholder: "Filter", "aria-label": "Filter topics", class: "grow", oninput: () => this.#list() });
-    const head = h("tr", {}, h("th", { scope: "col" }, "Topic"), h("th", { scope: "col", class: "topics-number" }, "Hz"),
+    const head = h("tr", {}, h("th", { scope: "col" }, "Topic"), h("th", { scope: "col", class: "topics-number" }, "Hz", h("span", { class: "topics-below" }, "Bandwidth")),
       h("th", { scope: "col", class: "topics-number" }, "Bandwidth"), h("th", { scope: "col", class: "topics-ends" }, "Ends"));
     this.#table = h("table", { class: "topics-table" }, h("thead", {}, head), this.#body);
     container.append(h("div", { class: "panel" }, h("div", { class: "bar" }, this.#filter, this.#count),
@@ -103,7 +106,7 @@ class TopicsPanel implements PanelInstance {
     const ends = h("td", { class: "topics-ends number quiet" });
     const open = h("button", { class: "bare topics-name", title: `Show the messages of ${name}`, onclick: () => this.context.open("raw", { topic: name }) }, name);
     const element = h("tr", {}, h("td", {}, open, type), rate, bandwidth, ends);
-    return { element, type, rate, bandwidth, ends, topic };
+    return { element, type, rate, hz: h("span"), below: h("span", { class: "topics-below" }), bandwidth, ends, topic };
   }
 
   #measure(names: readonly string[]): void {
@@ -132,8 +135,11 @@ class TopicsPanel implements PanelInstance {
         continue;
       }
       const statistics = row.topic.isPublished ? this.connection.statistics(name) : null;
-      setText(row.rate, statistics && statistics.count > 0 ? rateText(statistics.rateHz) : "–");
-      setText(row.bandwidth, statistics && statistics.bytesPerS > 0 ? `${bytesText(statistics.bytesPerS)}/s` : "–");
+      const bandwidth = statistics && statistics.bytesPerS > 0 ? `${bytesText(statistics.bytesPerS)}/s` : "";
+      setText(row.hz, statistics && statistics.count > 0 ? rateText(statistics.rateHz) : "–");
+      if (!row.hz.isConnected) row.rate.replaceChildren(row.hz, row.below);
+      setText(row.below, bandwidth);
+      setText(row.bandwidth, bandwidth || "–");
     }
   }
 }

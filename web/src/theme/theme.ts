@@ -29,7 +29,7 @@ export class Theme {
     this.#apply();
   }
 
-  /** A colour of `theme.css` by its name without dashes: `colour("thread")` → "#c9430c". */
+  /** A colour of `theme.css` by its name without dashes: `colour("thread")` → "#bf3e0a". */
   colour(name: string): string {
     let value = this.#colours.get(name);
     if (value === undefined) {

@@ -1,7 +1,9 @@
 /** The page: connection, robot, scene and panels, put together. */
 
 import { connectTo } from "../connection/foxglove";
+import { download } from "../panels/format";
 import { panelKinds } from "../panels/panel";
+import { LogHistory } from "../robot/log_history";
 import { Operator } from "../robot/operator";
 import { RobotState } from "../robot/robot_state";
 import { Scene } from "../scene/scene";
@@ -31,6 +33,7 @@ export class App {
   readonly #token = storedToken();
   readonly connection = connectTo(serverAddress(), this.#token && `?token=${encodeURIComponent(this.#token)}`);
   readonly transforms = new TransformTree();
+  readonly log = new LogHistory(this.connection);
   readonly robot: RobotState;
   readonly operator: Operator;
   readonly scene: Scene;
@@ -81,6 +84,7 @@ export class App {
       connection: this.connection,
       transforms: this.transforms,
       theme: this.theme,
+      log: this.log,
       announce: (text, level) => this.view.answer(text, level === "error"),
       open: (kind, settings) => this.open(kind, settings),
       changed: () => this.#remember(),
@@ -166,10 +170,7 @@ export class App {
   }
 
   #save(): void {
-    const blob = new Blob([JSON.stringify(this.#layout(), null, 2)], { type: "application/json" });
-    const link = h("a", { href: URL.createObjectURL(blob), download: "navette-page-layout.json" });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    download("navette-page-layout.json", JSON.stringify(this.#layout(), null, 2), "application/json");
   }
 
   #load(text: string): void {

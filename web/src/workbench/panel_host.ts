@@ -2,6 +2,7 @@
 
 import type { Connection } from "../connection/connection";
 import { panelKind, type PanelContext, type PanelInstance, type Settings } from "../panels/panel";
+import type { LogHistory } from "../robot/log_history";
 import type { Theme } from "../theme/theme";
 import type { TransformTree } from "../transforms/transform_tree";
 import { h } from "../ui/dom";
@@ -11,6 +12,7 @@ export interface HostContext {
   readonly connection: Connection;
   readonly transforms: TransformTree;
   readonly theme: Theme;
+  readonly log: LogHistory;
   readonly announce: (text: string, level?: "info" | "error") => void;
   readonly open: (kind: string, settings?: Record<string, unknown>) => void;
   /** Settings changed: remember the layout. */
@@ -66,8 +68,8 @@ export class PanelHost {
   }
 
   #panelContext(): PanelContext {
-    const { connection, transforms, theme, announce, open } = this.context;
-    return { connection, transforms, theme, announce, open, settings: this.#settings(), setTitle: (title) => this.onTitle(title) };
+    const { connection, transforms, theme, log, announce, open } = this.context;
+    return { connection, transforms, theme, log, announce, open, settings: this.#settings(), setTitle: (title) => this.onTitle(title) };
   }
 
   #settings(): Settings {
