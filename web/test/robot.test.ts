@@ -93,6 +93,14 @@ describe("headlines", () => {
     expect(headlineOf(robot, new Duties()).text).toBe("Not connected");
   });
 
+  it("name who drives instead of navigation", () => {
+    const arbiter = (message: string, nodes: string): object => ({ ...status(message, { masked_topics: "/cmd_vel_nav", nodes }) });
+    connection.send("/commander", arbiter("operator", "/viewer"));
+    expect(headlineOf(robot, new Duties())).toEqual({ text: "Driven by operator (viewer)", detail: "Navigation waits with its goal", isBad: false });
+    connection.send("/commander", arbiter("pause", ""));
+    expect(headlineOf(robot, new Duties()).text).toBe("Paused");
+  });
+
   it("count nodes", () => {
     expect(nodeProblem([{ name: "/a", state: "gone", since: 1 }, { name: "/b_c", state: "silent", since: 100 }])).toEqual(["A and b c are missing", "Gone or not responding for 2 min."]);
   });
@@ -130,6 +138,14 @@ describe("teleoperation", () => {
     expect(drives().at(-1)).toEqual([0.5, 0]);
     pointer("pointercancel", 50, 0);
     expect(drives().at(-1)).toEqual([0, 0]);
+  });
+
+  it("states why keys do not drive a stopped robot", () => {
+    connection.send("/commander", status("emergency_stop"));
+    operator.drive(0.5, 0);
+    expect(answers.at(-1)).toBe("The emergency stop holds the robot: release it to drive.");
+    operator.stop();
+    expect(answers.at(-1)).toBe("");
   });
 
   it("repeats Stop until it is confirmed", () => {

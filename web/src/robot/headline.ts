@@ -54,8 +54,9 @@ export function headlineOf(robot: RobotState, duties: Duties): Headline {
     return { text: "Emergency stop", detail: "The robot obeys no command until the stop is released.", isBad: true };
   }
   if (arbiter?.values["masked_topics"]?.includes("/cmd_vel_nav")) {
-    const parts = ["Navigation is paused", ...details(robot)];
-    return { text: `${commanderText(arbiter)} commands`, detail: parts.join(" · "), isBad: false };
+    const parts = ["Navigation waits with its goal", ...details(robot)];
+    const text = arbiter.message === "pause" ? "Paused" : `Driven by ${uncapitalised(commanderText(arbiter))}`;
+    return { text, detail: parts.join(" · "), isBad: false };
   }
   const others = missed.map(({ name, since }) => `${name} has not responded for ${ageText(since)}`);
   const recording = recordingText(connection);
@@ -152,6 +153,10 @@ export function recordingText({ playback }: Connection): string | null {
 export function commanderText({ message, values }: Pick<StageStatus, "message" | "values">): string {
   const from = values["nodes"]?.replaceAll("/", "").replaceAll(",", ", ");
   return words(message) + (message !== "navigation" && from ? ` (${from})` : "");
+}
+
+function uncapitalised(text: string): string {
+  return text.charAt(0).toLowerCase() + text.slice(1);
 }
 
 /** "Control", "Control and planner", "4 nodes". */

@@ -110,6 +110,7 @@ export class Operator {
     this.#command = [linearMps, angularRadps];
     this.#publishDrive();
     const isMoving = linearMps !== 0 || angularRadps !== 0;
+    if (isMoving && this.robot.isStopped) this.answer("The emergency stop holds the robot: release it to drive.", true);
     if (isMoving) this.#driving ??= setInterval(() => this.#publishDrive(), PERIOD_MS);
     else {
       clearInterval(this.#driving);
@@ -135,6 +136,7 @@ export class Operator {
     if (this.isDriving) this.drive(0, 0);
     clearInterval(this.#stopping);
     if (!this.#publishStop()) return this.answer("Not connected: this page cannot stop the robot.", true);
+    this.answer(""); // of what was sent before
     let left = STOP_REPEATS;
     this.#stopping = setInterval(() => {
       if (left-- > 0 && !this.robot.isStopped) this.#publishStop();

@@ -3,7 +3,7 @@
 import { apply, compose, yawOf, type Transform, type Vector } from "../transforms/transform";
 import { CloudPainter, type PlacedCloud } from "./cloud_painter";
 import { convexHull } from "./hull";
-import { rgba, type Lines, type Points, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
+import { rgba, type Label, type Lines, type Points, type Primitive, type Raster, type Sign, type Solid } from "./primitives";
 import { fitCanvas, type DrawItem, type Ray, type Renderer, type Viewpoint } from "./renderer";
 import { cornersOf } from "./solids";
 
@@ -92,7 +92,7 @@ export class CanvasRenderer implements Renderer {
         return this.#sign(primitive, pose);
       case "label": {
         const [x, y] = apply(pose, primitive.position);
-        return this.#label(x, y, primitive.text, primitive.colour, primitive.sizePx);
+        return this.#label(x, y, primitive);
       }
     }
   }
@@ -213,7 +213,7 @@ export class CanvasRenderer implements Renderer {
     context.restore();
   }
 
-  #label(x: number, y: number, text: string, colour: string, sizePx: number): void {
+  #label(x: number, y: number, { text, colour, sizePx, abovePx = 6 }: Label): void {
     const context = this.#context;
     context.save();
     context.translate(x, y);
@@ -223,9 +223,9 @@ export class CanvasRenderer implements Renderer {
     context.lineWidth = 3;
     context.lineJoin = "round";
     context.strokeStyle = this.#sky;
-    context.strokeText(text, 0, -6);
+    context.strokeText(text, 0, -abovePx);
     context.fillStyle = colour;
-    context.fillText(text, 0, -6);
+    context.fillText(text, 0, -abovePx);
     context.restore();
   }
 }

@@ -74,6 +74,8 @@ export interface Label {
   readonly text: string;
   readonly colour: Colour;
   readonly sizePx: number;
+  /** How far above its place the text begins, beside a sign; 6 without it. */
+  readonly abovePx?: number;
 }
 
 export type Primitive = Raster | Points | Lines | Solid | Sign | Label;

@@ -3,7 +3,7 @@
 import type { Connection, Dispose } from "../connection/connection";
 import type { RobotState } from "../robot/robot_state";
 import type { Theme } from "../theme/theme";
-import { IDENTITY, type Vector } from "../transforms/transform";
+import { apply, IDENTITY, type Vector } from "../transforms/transform";
 import type { TransformTree } from "../transforms/transform_tree";
 import { h } from "../ui/dom";
 import { nextFrame } from "../ui/frames";
@@ -13,7 +13,7 @@ import type { Surroundings } from "./display";
 import { onGround, pick, type Pick } from "./picking";
 import { placeOf, type Part } from "./primitives";
 import type { DrawItem, Renderer } from "./renderer";
-import { unionOf, Viewing, type Box, type ViewMode } from "./viewing";
+import { boxIn, unionOf, Viewing, type Box, type ViewMode } from "./viewing";
 
 export interface SceneSettings {
   fixedFrame: string | null;
@@ -160,15 +160,18 @@ export class Scene implements Surroundings {
     const fixed = this.fixedFrame;
     const base = fixed === null ? null : this.robot.baseIn(fixed);
     if (base) boxes.push(around(base.translation, first ? 0.6 : 4));
-    for (const { pose } of this.displays.goal.goals) boxes.push(around(pose.translation, 0.6));
+    for (const { frame, pose } of this.displays.goal.goals) {
+      const fixed_T_goal = fixed === null ? null : this.transforms.lookUp(fixed, frame);
+      if (fixed_T_goal) boxes.push(around(apply(fixed_T_goal, pose.translation), 0.6));
+    }
     return unionOf(boxes);
   }
 
+  /** The box about a box of the frame of a part, which may be turned. */
   #inFixed(box: Box, part: Part | undefined): Box {
     const fixed = this.fixedFrame;
-    const place = fixed === null || !part ? null : placeOf(part, fixed, this.transforms);
-    const [dx, dy] = place?.translation ?? [0, 0];
-    return [box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy];
+    const fixed_T_part = fixed === null || !part ? null : placeOf(part, fixed, this.transforms);
+    return fixed_T_part ? boxIn(fixed_T_part, box) : box;
   }
 
   readonly #draw = (): void => {

@@ -325,7 +325,7 @@ function quad(ax: number, ay: number, bx: number, by: number, width: number): nu
   return [...a, ...b, ...c, ...a, ...c, ...d];
 }
 
-function labelOf({ position: [x, y, z], text, colour, sizePx }: Label): Built {
+function labelOf({ position: [x, y, z], text, colour, sizePx, abovePx = 6 }: Label): Built {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d");
   const font = `600 ${2 * sizePx}px system-ui, sans-serif`;
@@ -342,7 +342,7 @@ function labelOf({ position: [x, y, z], text, colour, sizePx }: Label): Built {
   texture.colorSpace = SRGBColorSpace;
   const material = new SpriteMaterial({ map: texture, depthTest: false, transparent: true });
   const sprite = new Sprite(material);
-  sprite.center.set(0.5, -0.1);
+  sprite.center.set(0.5, -0.1 - (abovePx - 6) / (1.5 * sizePx));
   sprite.scale.set(canvas.width / canvas.height, 1, 1);
   const holder = new Object3D();
   holder.add(sprite);

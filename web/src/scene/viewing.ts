@@ -1,6 +1,7 @@
 /** Moves the viewpoint: pan, zoom, turn, follow the robot, fit to what is known. */
 
 import type { Dispose } from "../connection/connection";
+import { apply, type Transform } from "../transforms/transform";
 import type { Viewpoint } from "./renderer";
 
 const LOWEST_SCALE = 0.5;
@@ -133,4 +134,13 @@ export function unionOf(boxes: readonly Box[]): Box | null {
   if (boxes.length === 0) return null;
   const part = (index: 0 | 1 | 2 | 3, choose: (...values: number[]) => number): number => choose(...boxes.map((box) => box[index]));
   return [part(0, Math.min), part(1, Math.min), part(2, Math.max), part(3, Math.max)];
+}
+
+/** The box about a box of another frame, seen from above. */
+export function boxIn(pose: Transform, [left, low, right, high]: Box): Box {
+  const corners = [[left, low], [right, low], [right, high], [left, high]] as const;
+  return unionOf(corners.map(([x, y]) => {
+    const [px, py] = apply(pose, [x, y, 0]);
+    return [px, py, px, py];
+  }))!;
 }

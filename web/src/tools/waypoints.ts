@@ -59,7 +59,7 @@ export function routeOf(goals: readonly Goal[], colour: string, isDashed: boolea
   const line: Primitive[] = goals.length > 1 ? [{ kind: "lines", positions, mode: "strip", colour, widthPx: 1.5, isDashed }] : [];
   const marks = goals.flatMap((goal, index): Primitive[] => [
     { kind: "sign", shape: "ring", pose: placeOf(goal), sizePx: 12, colour },
-    { kind: "label", position: [goal.x, goal.y, 0], text: String(index + 1), colour, sizePx: 12 },
+    { kind: "label", position: [goal.x, goal.y, 0], text: String(index + 1), colour, sizePx: 12, abovePx: 10 },
   ]);
   return [...line, ...marks];
 }
