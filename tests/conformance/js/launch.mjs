@@ -34,3 +34,10 @@ export async function downloaded(page, folder, action) {
   }
   throw new Error("no file was downloaded within 30 s");
 }
+
+/** Type a text into a field and press Enter: Firefox reports no change of what a script fills in. */
+export async function typeInto(page, field, text) {
+  await field.selectText();
+  await page.keyboard.type(text);
+  await page.keyboard.press("Enter");
+}

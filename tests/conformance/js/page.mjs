@@ -1,7 +1,7 @@
 // A browser on the live view's page: prints what it reads, sends a goal.
 //
 //   node page.mjs http://127.0.0.1:PORT CHROMIUM
-import { launch } from "./launch.mjs";
+import { launch, typeInto } from "./launch.mjs";
 
 const [url, executablePath] = process.argv.slice(2);
 const browser = await launch(executablePath);
@@ -66,8 +66,7 @@ try {
   await page.locator('input[aria-label="/robot.speed_mps, slider"]').fill("1.5");
   await until(() => document.querySelector('input[aria-label="/robot.speed_mps"]').value === "1.5");
   const slider = await page.$eval('input[aria-label="/robot.speed_mps, slider"]', ({ min, max }) => [min, max]);
-  await page.fill('input[aria-label="/robot.speed_mps"]', "9");
-  await page.press('input[aria-label="/robot.speed_mps"]', "Enter");
+  await typeInto(page, page.locator('input[aria-label="/robot.speed_mps"]'), "9");
   await page.locator(".parameters-list .hint.bad:visible").waitFor();
   const refusal = await page.textContent(".parameters-list .hint.bad:visible");
   // The planner published its status once only.

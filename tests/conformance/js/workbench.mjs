@@ -9,7 +9,7 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
-import { downloaded, launch } from "./launch.mjs";
+import { downloaded, launch, typeInto } from "./launch.mjs";
 
 const [part, url, executablePath, folder] = process.argv.slice(2);
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -312,9 +312,7 @@ async function files() {
   await page.evaluate(() => navette.open("parameters"));
   await page.getByRole("combobox", { name: "Node" }).last().selectOption("/control");
   const field = page.locator('input[aria-label="/control.acceleration_mps2"]');
-  await field.selectText(); // typed: Firefox reports no change of a text that a script fills in
-  await page.keyboard.type("-5");
-  await page.keyboard.press("Enter");
+  await typeInto(page, field, "-5");
   await page.getByText("must be >= 0.01").first().waitFor();
   seen.parameter = await field.inputValue();
   await page.evaluate(() => navette.operator.sendGoal({ frame: "nowhere", x: 1, y: 1, yaw: null }));

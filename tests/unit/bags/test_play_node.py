@@ -75,6 +75,21 @@ def test_late_subscribers_receive_latched_messages() -> None:
         assert texts_after(graph, graph.collect("/map", String)) == []
 
 
+def test_a_subscriber_receives_the_last_message_while_the_recording_is_paused() -> None:
+    """A page that is opened, or opens a panel, then displays the moment."""
+    with GraphHarness() as graph:
+        player = play(graph, source())
+        player.start()
+        graph.run_for(1.2)
+        assert texts_after(graph, graph.collect("/chatter", String)) == []
+        player.pause()
+        assert texts_after(graph, graph.collect("/chatter", String)) == ["2"]
+        player.resume()
+        graph.run_for(5.0)
+        assert player.player.state is PlayState.ENDED
+        assert texts_after(graph, graph.collect("/chatter", String)) == ["4"]
+
+
 def texts_after(graph: GraphHarness, probe: Any) -> list[str]:
     graph.run_for(0.0)
     return texts(probe)

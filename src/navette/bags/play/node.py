@@ -3,7 +3,8 @@
 Messages are published as recorded, without decoding. Publishers have the recorded QoS,
 so late subscribers receive latched topics; a start in the middle, a loop and a seek
 first publish the latched messages of that position. With a clock rate the node is the
-source of ``/clock``: a jump is published there before anything else.
+source of ``/clock``: a jump is published there before anything else. While nothing
+moves, a new subscriber of a topic receives its last message.
 
 Services under the node's name, as of rosbag2's player: pause, resume, toggle_paused,
 is_paused, set_rate, get_rate, play_next, seek, stop.
@@ -31,9 +32,8 @@ from navette.runtime.context import Context
 from navette.runtime.events import Call
 from navette.runtime.node import Node
 from navette.runtime.publisher import Publisher
-from navette.runtime.qos import (
-    QoSProfile,
-)
+from navette.runtime.qos import QoSProfile
+from navette.runtime.qos_events import PublisherEventCallbacks, QoSMatchedInfo
 from navette.runtime.time import ns_to_stamp
 
 CLOCK_TOPIC = "/clock"
@@ -302,10 +302,23 @@ class PlayerNode(Node):
             if name.lstrip("/") != topic.name.lstrip("/"):
                 self.get_logger().warning(f"{escaped(topic.name)} is played as {name}")
             profile = profile_of(joint_offer(topic))
-            return self.create_publisher(message_class(topic), name, profile)
+            return self.create_publisher(
+                message_class(topic),
+                name,
+                profile,
+                event_callbacks=PublisherEventCallbacks(
+                    matched=partial(self._on_matched, topic)
+                ),
+            )
         except NavetteError as error:
             self.get_logger().warning(f"{escaped(topic.name)} is not played: {error}")
             return None
+
+    def _on_matched(self, topic: BagTopic, info: QoSMatchedInfo) -> None:
+        if info.current_count_change <= 0 or self.player.state is PlayState.PLAYING:
+            return
+        for message in self.player.last_before(topic, self._now_ns()):
+            self._say(message)
 
     def _serve(self) -> None:
         for name, (kind, answer) in SERVICES.items():

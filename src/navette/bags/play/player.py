@@ -8,7 +8,7 @@ message at a time. The same calls produce the same messages with any clock.
 from dataclasses import dataclass
 from enum import Enum
 
-from navette.bags.bag import BagMessage
+from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.play.feed import DirectFeed, Feed, MakeFeed
 from navette.bags.play.latched import latched_before, recent_before
 from navette.bags.play.options import PlayOptions
@@ -90,6 +90,16 @@ class Player:
 
     def position_ns(self, now_ns: int) -> int:
         return max(self.begin_ns, min(self.end_ns, self._head.at(now_ns)))
+
+    def last_before(self, topic: BagTopic, now_ns: int) -> list[BagMessage]:
+        """Return the last messages of a topic that is not latched, as after a seek."""
+        if self._feed is None:
+            return []
+        place_ns = self.position_ns(now_ns)
+        following = None if self._ended else self._feed.peek()
+        if following is None or following.stamp_ns > place_ns:
+            place_ns += 1  # the message at this place has been played
+        return recent_before(self._source, (topic,), place_ns)
 
     def due_ns(self) -> int | None:
         """Time of the next :meth:`take`; None while nothing is due."""

@@ -230,9 +230,14 @@ export class GroundGridDisplay extends Display {
   /** left, low, right, high of what is visible, and metres per pixel. */
   view: readonly [number, number, number, number, number] = [-10, -10, 10, 10, 0.02];
 
+  /** The fixed frame that the lines are in: it changes without the view, as after a seek. */
+  #frame: string | null = null;
+
   show(view: readonly [number, number, number, number, number]): void {
-    if (view.every((value, index) => value === this.view[index])) return;
+    const frame = this.around.fixedFrame;
+    if (frame === this.#frame && view.every((value, index) => value === this.view[index])) return;
     this.view = view;
+    this.#frame = frame;
     this.restyle();
   }
 
