@@ -79,7 +79,7 @@ def test_the_operator_at_the_page(program: Program) -> None:
     assert all(seen["reachable"])
     assert seen["wide"] <= 360
     assert seen["operator"] == "Operator (viewer)"
-    assert seen["headline"] == "Operator (viewer) commands"
+    assert seen["headline"] == "Driven by operator (viewer)"
     turns = {"ArrowLeft": 0.8, "ArrowRight": -0.8}
     presses = [(turns[key], ms) for key, ms in seen["presses"] if key in turns]
     assert len(presses) == TRIES

@@ -146,7 +146,10 @@ export class App {
 
   #layoutMenu(close: () => void): Node[] {
     const file = h("input", { type: "file", accept: ".json", hidden: true, "aria-label": "Layout file" });
-    file.addEventListener("change", () => void file.files?.[0]?.text().then((text) => this.#load(text)));
+    file.addEventListener("change", () => {
+      close();
+      void file.files?.[0]?.text().then((text) => this.#load(text));
+    });
     const { address, query } = this.connection;
     const copy = menuItem("Copy the address", () => {
       close();

@@ -57,7 +57,7 @@ export const SHIPPED: readonly Layout[] = [
     name: "Course",
     places: {
       left: panels("displays", "frames", "graph"),
-      right: panels("raw", "parameters", "run"),
+      right: panels(["raw", { topic: "/odom/filtered" }], "parameters", "run"),
       below: panels(["plot", { paths: SPEEDS }], "topics", "log"),
     },
     open: ["left", "right"],
