@@ -123,7 +123,7 @@ class ImagePanel implements PanelInstance {
     const message = this.#message;
     if (!message || this.#isDecoding) return;
     try {
-      if (message.type.endsWith("/CompressedImage")) void this.#drawCompressed(message.value as { data: Uint8Array<ArrayBuffer>; format: string });
+      if (message.type.endsWith("/CompressedImage")) void this.#drawCompressed(message);
       else this.#drawRaw(message.value as RawImage);
     } catch (error) {
       this.#fail(error);
@@ -143,7 +143,8 @@ class ImagePanel implements PanelInstance {
     this.#failure = "";
   }
 
-  async #drawCompressed({ data, format }: { data: Uint8Array<ArrayBuffer>; format: string }): Promise<void> {
+  async #drawCompressed(message: Message): Promise<void> {
+    const { data, format } = message.value as { data: Uint8Array<ArrayBuffer>; format: string };
     this.#isDecoding = true;
     try {
       const kind = /png/.test(format) ? "image/png" : /webp/.test(format) ? "image/webp" : "image/jpeg";
@@ -156,6 +157,8 @@ class ImagePanel implements PanelInstance {
       this.#fail(new Error(`the format ${format || "(none)"} cannot be decoded`));
     } finally {
       this.#isDecoding = false;
+      this.#showFacts(message);
+      if (this.#message !== message) nextFrame(this.#draw); // one came meanwhile
     }
   }
 
@@ -183,10 +186,12 @@ class ImagePanel implements PanelInstance {
       context.strokeRect(-box.width / 2, -box.height / 2, box.width, box.height);
       if (box.label) {
         const width = context.measureText(box.label).width + 8 * scale;
+        // Above the box, or in it at the image's upper edge.
+        const top = -box.height / 2 - (box.y - box.height / 2 < 17 * scale ? 0 : 17 * scale);
         context.fillStyle = colour;
-        context.fillRect(-box.width / 2 - scale, -box.height / 2 - 17 * scale, width, 17 * scale);
+        context.fillRect(-box.width / 2 - scale, top, width, 17 * scale);
         context.fillStyle = this.context.theme.colour("on-thread");
-        context.fillText(box.label, -box.width / 2 + 3 * scale, -box.height / 2 - 4.5 * scale);
+        context.fillText(box.label, -box.width / 2 + 3 * scale, top + 12.5 * scale);
       }
       context.restore();
     }
@@ -200,7 +205,8 @@ class ImagePanel implements PanelInstance {
   #showFacts(message: Message): void {
     const statistics = this.context.connection.statistics(message.topic);
     const found = this.#detections.length > 0 ? ` · ${this.#detections.length} detections` : "";
-    setText(this.#facts, `${this.#canvas.width} × ${this.#canvas.height} · ${rateText(statistics?.rateHz ?? null)} Hz · ${bytesText(statistics?.bytesPerS ?? 0)}/s${found}`);
+    const stream = statistics && statistics.rateHz !== null ? ` · ${rateText(statistics.rateHz)} Hz · ${bytesText(statistics.bytesPerS)}/s` : "";
+    setText(this.#facts, `${this.#canvas.width} × ${this.#canvas.height}${stream}${found}`);
   }
 
   #showEmpty(): void {
