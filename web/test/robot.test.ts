@@ -93,6 +93,14 @@ describe("headlines", () => {
     expect(headlineOf(robot, new Duties()).text).toBe("Not connected");
   });
 
+  it("name the goal of a planner without a status", () => {
+    connection.send("/goal_point", { header: { frame_id: "map", stamp: { sec: 0, nanosec: 0 } }, point: { x: 2, y: 1, z: 0 } });
+    connection.send("/control/status", status("following"));
+    expect(headlineOf(robot, new Duties())).toEqual({ text: "Driving to 2.0, 1.0", detail: "Control: following", isBad: false });
+    connection.send("/control/status", status("reached"));
+    expect(headlineOf(robot, new Duties()).text).toBe("Reached 2.0, 1.0");
+  });
+
   it("name who drives instead of navigation", () => {
     const arbiter = (message: string, nodes: string): object => ({ ...status(message, { masked_topics: "/cmd_vel_nav", nodes }) });
     connection.send("/commander", arbiter("operator", "/viewer"));

@@ -204,7 +204,7 @@ class ImagePanel implements PanelInstance {
 
   #showFacts(message: Message): void {
     const statistics = this.context.connection.statistics(message.topic);
-    const found = this.#detections.length > 0 ? ` · ${this.#detections.length} detections` : "";
+    const found = this.#detections.length > 0 ? ` · ${this.#detections.length} detection${this.#detections.length > 1 ? "s" : ""}` : "";
     const stream = statistics && statistics.rateHz !== null ? ` · ${rateText(statistics.rateHz)} Hz · ${bytesText(statistics.bytesPerS)}/s` : "";
     setText(this.#facts, `${this.#canvas.width} × ${this.#canvas.height}${stream}${found}`);
   }

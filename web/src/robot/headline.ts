@@ -1,7 +1,7 @@
 /** The headline: what the robot does, or what is wrong, by priority. */
 
 import type { Connection, NodeReport } from "../connection/connection";
-import type { RobotState, Stage, StageStatus } from "./robot_state";
+import type { Goal, RobotState, Stage, StageStatus } from "./robot_state";
 import { ageText, fixed, words } from "./text";
 
 /** Planner and control publish their status at 2 Hz at least. */
@@ -63,7 +63,7 @@ export function headlineOf(robot: RobotState, duties: Duties): Headline {
   const first = firstStage(stages);
   if (first) {
     const parts = [...(recording ? [recording] : []), ...details(robot), ...others];
-    return { text: statusText(first), detail: parts.join(" · "), isBad: false };
+    return { text: statusText(first, robot.goal), detail: parts.join(" · "), isBad: false };
   }
   const text = recording ?? (connection.topics.size > 0 ? "Running" : "Waiting for the robot");
   return { text, detail: [`${connection.topics.size} topics`, ...others].join(" · "), isBad: false };
@@ -126,11 +126,13 @@ function firstStage(stages: ReadonlyMap<Stage, StageStatus>): StageStatus | unde
   return drive.sort((a, b) => b.level - a.level)[0];
 }
 
-function statusText({ message, values }: StageStatus): string {
+/** What the stage does, with its goal; another planner may name none. */
+function statusText({ message, values }: StageStatus, goal: Goal | null): string {
   if (message === "waiting_for_goal") return "Waiting for a goal";
   const verb = { following: "Driving to", reached: "Reached", planning: "Planning to" }[message];
-  const [x, y] = [Number(values["goal_x"]), Number(values["goal_y"])];
-  return verb && Number.isFinite(x) && Number.isFinite(y) ? `${verb} ${fixed(x, 1)}, ${fixed(y, 1)}` : words(message);
+  const stated = { x: Number(values["goal_x"]), y: Number(values["goal_y"]) };
+  const place = Number.isFinite(stated.x) && Number.isFinite(stated.y) ? stated : goal;
+  return verb && place ? `${verb} ${fixed(place.x, 1)}, ${fixed(place.y, 1)}` : words(message);
 }
 
 function details({ stages }: RobotState): string[] {
