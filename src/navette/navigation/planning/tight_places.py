@@ -1,8 +1,8 @@
 """Plan where no path was found on the map's own cells: finer cells, or a proof.
 
 The steps: cut out the map in cells of 2.5 cm, prove that no path exists, search through
-gaps with a part of the budget, search with all of it only where a path may exist, and
-try all motions on a fine grid.
+gaps with a part of the budget, try all motions on a fine grid, and search with all of
+the budget unless these prove that no path exists.
 """
 
 import math
@@ -20,6 +20,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
+from navette.navigation.planning.drive_flood import DriveMoves
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
@@ -94,15 +95,16 @@ class TightPlanner:
         found = self._search(body.through_gaps(slack), margin, quick)
         if found.outcome.has_path:
             return found
+        rough = replace(self._exhaustive(margin), expansions=found.expansions)
+        if rough.outcome is Outcome.NO_PATH:  # the search may know more of why
+            return rough if found.outcome is Outcome.SEARCH_LIMIT else found
         # The long search runs only if a path of exact poses at cell centres may exist,
         # and only there: a gap that the body cannot pass would attract it.
         reached, why = self._reached(0.0)
         if why is None:
             budget = self.params.max_expansions
             found = self._search(body.loose(slack), margin, budget, reached)
-        if found.outcome is not Outcome.SEARCH_LIMIT:
-            return found
-        return self._exhaustive(found, margin)
+        return found if found.outcome.has_path else rough
 
     def why_impossible(self) -> Outcome | None:
         """Return why no motion of the body reaches the goal; None if one may exist.
@@ -112,16 +114,19 @@ class TightPlanner:
         """
         return self._reached(None)[1]
 
-    def _exhaustive(self, found: Plan, margin_m: float) -> Plan:
+    def _exhaustive(self, margin_m: float) -> Plan:
         """Return a path by all motions on a fine grid, or that there is none.
 
         These paths are rough, of shorter motions than the search has, and off the
         cells' centres: they need only the least margin in the end. The first attempt
-        keeps the margin wherever in a cell the robot is. ``found`` remains where the
-        motions are too many.
+        keeps the margin wherever in a cell the robot is. ``search_limit``: the motions
+        are too many.
         """
         within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
         cells = self._ends()
+        moves = DriveMoves(self.params.drive, self.params.min_turning_radius_m)
+        yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
+        outcome = Outcome.NO_PATH
         for more_m in (within_cell_m, 0.0):
             space = self._space(margin_m + more_m)
             # Where the robot stands it may have less, and keeps that.
@@ -130,17 +135,14 @@ class TightPlanner:
                 space.close(self._closer.occupancy == UNKNOWN)
             if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
                 continue
-            drive, radius_m = self.params.drive, self.params.min_turning_radius_m
-            driven = space.driven(drive, radius_m)
-            if driven is None:
-                return found
-            yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
-            poses = driven.path_to(cells, yaw, tolerance)
-            least = min(margin_m, _LEAST_M)
-            rough = None if poses is None else self._rough_plan(poses, least)
-            if rough is not None:
-                return replace(rough, expansions=found.expansions)
-        return replace(found, outcome=Outcome.NO_PATH)
+            path = space.drive_to(cells, moves, yaw, tolerance)
+            if path.poses is not None:
+                rough = self._rough_plan(path.poses, min(margin_m, _LEAST_M))
+                if rough is not None:
+                    return rough
+            if not path.is_proof:
+                outcome = Outcome.SEARCH_LIMIT
+        return Plan(outcome)
 
     def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:
         """Return the plan of poses from all motions, if the body fits along them."""

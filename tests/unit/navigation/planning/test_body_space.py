@@ -12,6 +12,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
+from navette.navigation.planning.drive_flood import DriveMoves
 
 BODY = Footprint(((0.5, 0.2), (-0.5, 0.2), (-0.5, -0.2), (0.5, -0.2)))
 START = Pose2(1.0, 2.0, 0.0)
@@ -112,11 +113,11 @@ def test_only_an_omnidirectional_drive_slides_into_a_bay(
     lethal, spec = bay()
     start = Pose2(1.0, 0.5, 0.0)
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.03)
-    poses = space.driven(drive, 0.8 if drive == "ackermann" else 0.0)
-    assert poses is not None
-    path = poses.path_to(np.array([spec.cell_of(3.6, 1.1)]))
-    assert (path is not None) == enters
-    assert poses.path_to(np.array([spec.cell_of(5.0, 0.5)])) is not None
+    moves = DriveMoves(drive, 0.8 if drive == "ackermann" else 0.0)
+    path = space.drive_to(np.array([spec.cell_of(3.6, 1.1)]), moves)
+    assert (path.poses is not None) == enters
+    assert path.is_proof
+    assert space.drive_to(np.array([spec.cell_of(5.0, 0.5)]), moves).poses is not None
 
 
 @pytest.mark.parametrize(
@@ -128,9 +129,8 @@ def test_a_path_of_driven_poses_keeps_the_margin_and_the_drive(
     lethal, spec = wall(0.56)
     start = Pose2(0.9, 1.2, 0.4)
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.04)
-    driven = space.driven(drive, radius_m)
-    assert driven is not None
-    path = driven.path_to(np.array([spec.cell_of(3.2, 2.0)]))
+    goal = np.array([spec.cell_of(3.2, 2.0)])
+    path = space.drive_to(goal, DriveMoves(drive, radius_m)).poses
     assert path is not None
     assert path[0] == pytest.approx(start, abs=1e-6)
     obstacles = make_obstacles(lethal.astype(np.uint8), spec)
@@ -143,3 +143,29 @@ def test_a_path_of_driven_poses_keeps_the_margin_and_the_drive(
     assert np.abs(aside).max() < 1e-4
     if radius_m:
         assert (turns * radius_m <= 1.01 * np.hypot(*steps.T)).all()
+
+
+@pytest.mark.parametrize("drive", ["differential", "ackermann"])
+def test_a_small_region_around_the_goal_decides(drive: str) -> None:
+    """A hall of 40 m × 40 m, and a closet with a slit beside it."""
+    spec = GridSpec(0.05, 800, 800)
+    lethal = np.zeros(spec.shape, np.bool_)
+    lethal[780, :] = lethal[780:, 770] = True
+    lethal[780, 790:793] = False  # 0.15 m
+    start, goal = Pose2(5.0, 5.0, 0.3), np.array([[790, 785]])
+    space = BodySpace(lethal, spec, BODY, start, margin_m=0.0)
+    path = space.drive_to(goal, DriveMoves(drive, 0.8))
+    assert path == (None, True)
+    there = space.drive_to(np.array([[700, 700]]), DriveMoves(drive, 0.8))
+    assert there.poses is not None
+
+
+def test_the_last_heading_is_the_one_wanted() -> None:
+    spec = GridSpec(0.05, 100, 60)
+    space = BodySpace(
+        np.zeros(spec.shape, np.bool_), spec, BODY, Pose2(1.0, 1.0, 0.5), margin_m=0.0
+    )
+    goal, moves = np.array([spec.cell_of(4.0, 2.0)]), DriveMoves("ackermann", 0.8)
+    path = space.drive_to(goal, moves, yaw=-2.0, tolerance_rad=0.2).poses
+    assert path is not None
+    assert path[-1] == pytest.approx([4.0, 2.0, -2.0], abs=0.2)
