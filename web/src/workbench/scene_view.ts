@@ -13,6 +13,8 @@ import { InfoCard } from "./info_card";
 import { waypointCard } from "./waypoint_card";
 
 const ANSWER_MS = 8000;
+/** So long after the connection the first messages may take. */
+const FIRST_MS = 5000;
 
 export class SceneView {
   readonly element: HTMLElement;
@@ -30,6 +32,8 @@ export class SceneView {
   readonly #drive = h("button", { id: "drive", title: "Drive with a stick (D)", "aria-pressed": "false" }, icon("stick"), "Drive");
   readonly #stick: HTMLElement;
   #answerTimer: ReturnType<typeof setTimeout> | undefined;
+  /** Since when the connection is live. */
+  #connectedMs = performance.now();
 
   constructor(
     private readonly scene: Scene,
@@ -195,10 +199,13 @@ export class SceneView {
     this.#welcome.hidden = !isShown;
     if (!isShown) return;
     const { state } = connection.status;
+    const now = performance.now();
+    if (state !== "live") this.#connectedMs = now;
     const [title, text] =
       state === "connecting" ? ["Preparing…", "Connecting to the robot's program."]
       : state === "lost" ? ["Not connected", "Start the robot again, for example with navette demo. The page reconnects by itself."]
       : connection.topics.size === 0 ? ["Preparing…", "The program is starting its nodes."]
+      : now - this.#connectedMs < FIRST_MS ? ["Preparing…", "Waiting for the first map, scan or transform."]
       : ["Nothing to draw yet", "No map, scan or transform has arrived. Open Topics to see what the program publishes."];
     const key = `${title}${text}`;
     if (this.#welcome.dataset["key"] === key) return;
