@@ -58,6 +58,9 @@ _BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
 # there of a drive that cannot turn in place.
 _END_M = 0.15
 _END_YAW_RAD = 0.08
+# This near to a change of direction, a robot that drives in the new direction at this
+# speed has made it.
+_CUSP_M, _CUSP_MPS = 0.25, 0.05
 
 
 class _Mode(NamedTuple):
@@ -96,7 +99,7 @@ class PredictiveFollower(BaseFollower):
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
         super().reset(rest)
         self._path: PathWindow | None = None
-        self._at = 0
+        self._at = self._first = 0
         self._last_turn: TurnInPlace | None = None
         self._cross_track = self._heading_error = 0.0
         self._sampled_at: MotionState | None = None  # of the last step
@@ -124,7 +127,7 @@ class PredictiveFollower(BaseFollower):
         if not drove:
             self.reset()
         self._path = _window(poses)
-        self._at = 0
+        self._at = self._first = 0
         self._last_turn = None
         self._rest = None
         self._last, self._clearance = last, clearance
@@ -157,7 +160,7 @@ class PredictiveFollower(BaseFollower):
             return stopped
         assert self._path is not None, "a path is being followed"
         self._scale, self._limited_by = 1.0, LimitedBy.NONE
-        self._advance(self._path, inputs.pose)
+        self._advance(self._path, inputs)
         last = self._last or VelocityCommand(
             inputs.speed, inputs.turn_rate, inputs.side_speed
         )
@@ -277,11 +280,20 @@ class PredictiveFollower(BaseFollower):
         self._set_scale(min(1.0, scale))
         return self._emit(command.scaled(self._scale), ControlState.FOLLOWING)
 
-    def _advance(self, path: PathWindow, pose: Pose2) -> None:
-        """Move to the pose of the path nearest to the robot; never back."""
+    def _advance(self, path: PathWindow, inputs: FollowerInputs) -> None:
+        """Move to the pose of the path nearest to the robot; never back.
+
+        Rollouts often turn round before a cusp. The robot then drives over the poses
+        before it again: matched with those, no motion is progress, and it would stand.
+        """
+        pose = inputs.pose
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         here = pose.x, pose.y, c, s
-        self._at = at = _nearest_index(path, self._at, _SEARCH_M, here)
+        at = _nearest_index(path, self._at, _SEARCH_M, here)
+        cusp = _cusp_made(path, at, inputs.speed)
+        if cusp is not None:
+            self._first, at = cusp, _nearest_index(path, cusp, _SEARCH_M, here)
+        self._at = at
         dx, dy = pose.x - float(path.x[at]), pose.y - float(path.y[at])
         path_c, path_s = float(path.cos[at]), float(path.sin[at])
         self._cross_track = math.copysign(math.hypot(dx, dy), path_c * dy - path_s * dx)
@@ -290,7 +302,7 @@ class PredictiveFollower(BaseFollower):
 
     def _near(self, path: PathWindow) -> PathWindow:
         """Return the stretch that the robot can drive within the horizon."""
-        first = max(0, self._at - _BEHIND)
+        first = max(self._first, self._at - _BEHIND)
         reach = self._params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5
         stop = int(np.searchsorted(path.measure, path.measure[self._at] + reach)) + 1
         near = slice(first, stop)
@@ -366,6 +378,18 @@ def _nearest_index(
         if best == at or best + 1 < i:
             return best
         at = best
+
+
+def _cusp_made(path: PathWindow, at: int, speed: float) -> int | None:
+    """Return the index of the next change of direction if the robot has made it."""
+    direction = path.direction[at]
+    if direction * speed > -_CUSP_MPS:
+        return None
+    stop = int(np.searchsorted(path.measure, path.measure[at] + _CUSP_M, "right"))
+    others = np.flatnonzero(path.direction[at:stop] != direction)
+    if not len(others) or path.direction[at + others[0]] == 0:
+        return None
+    return at + int(others[0])
 
 
 def _window(poses: NDArray[np.float64]) -> PathWindow:

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navette.errors import InvalidValueError
-from navette.geometry import Footprint, Pose2
+from navette.geometry import Footprint, Pose2, advanced
+from navette.navigation.control import ControlParams
 from navette.navigation.control.follower import nearest_index
 from navette.navigation.control.limits import STOP, SpeedCap
 from navette.navigation.control.predictive_follower import (
@@ -136,6 +137,45 @@ def test_a_narrow_passage_is_driven_through() -> None:
     result = run(robot, plant, 45.0)
     assert result.final.state == "reached"
     assert min(o.clearance_m for o in result.outputs) > 0.01
+
+
+CAR = ControlParams(
+    drive="ackermann",
+    method="mppi",
+    min_turning_radius_m=0.77,
+    steering_time_s=0.15,
+    cruise_speed_mps=1.5,
+    reverse_speed_mps=0.6,
+    max_turn_rate_radps=3.0,
+    acceleration_mps2=1.5,
+    deceleration_mps2=2.0,
+    turn_acceleration_radps2=12.0,
+    lateral_acceleration_mps2=2.5,
+    mppi_clearance_m=0.15,
+    mppi_align_weight=12.0,
+    mppi_heading_weight=2.0,
+    mppi_reverse_weight=2.0,
+    footprint_m=(0.46, 0.16, -0.12, 0.16, -0.12, -0.16, 0.46, -0.16),
+)
+
+
+def three_point_turn(spacing: float = 0.07) -> tuple[np.ndarray, int]:
+    """Return a path that turns left, in reverse and then forward, and its cusp."""
+    pose, poses, bend = Pose2(0, 0, 0), [], 1 / 0.85
+    for direction, count, curvature in ((-1, 18, bend), (1, 25, bend), (1, 40, 0.0)):
+        for _ in range(count):
+            poses.append(tuple(pose))
+            pose = advanced(pose, direction * spacing, curvature * spacing, 1.0)
+    return np.array([*poses, tuple(pose)]), 18
+
+
+@pytest.mark.parametrize("before", range(5))
+def test_a_car_that_turns_round_before_a_cusp_drives_on(before: int) -> None:
+    path, cusp = three_point_turn()
+    plant = Plant(Pose2(*path[cusp - before]), lag_s=0.05, turning=1.0)
+    car = PredictiveFollower(CAR)
+    car.set_path(path)
+    assert run(car, plant, 8.0).final.state == "reached"
 
 
 def test_a_path_that_is_published_again_is_followed_from_the_robot() -> None:
