@@ -55,6 +55,16 @@ def test_breadth_first_finds_the_fewest_moves(
         assert len(found[0]) <= len(best[0])
 
 
+@given(GRIDS, st.data())
+def test_the_reachable_cells_are_those_with_a_cost_to_go(
+    cost: np.ndarray, data: st.DataObject
+) -> None:
+    start, table = ends(data, cost.shape), EdgeTable()
+    field = dijkstra.cost_to_go(cost, [(start, 0)], table=table)
+    found = breadth_first.reachable(cost, start, table)
+    assert np.array_equal(found, field < dijkstra.UNREACHED)
+
+
 @given(GRIDS, st.data(), WEIGHTS)
 def test_pulled_lines_are_valid_and_not_more_expensive(
     cost: np.ndarray, data: st.DataObject, weight: float

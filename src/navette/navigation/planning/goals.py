@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.navigation.grids import GridSpec
-from navette.navigation.planning.dijkstra import UNREACHED, cost_to_go
+from navette.navigation.planning.breadth_first import reachable
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.traversal import LETHAL, Cell
@@ -23,7 +23,7 @@ def nearest_reachable(
 
     Reachable cells are found by a flood from the start.
     """
-    reached = cost_to_go(grid.cost, [(start, 0)], table=grid.table) < UNREACHED
+    reached = reachable(grid.cost, start, grid.table)
     cells, away = cells_within(grid, goal_xy, tolerance_m)
     rows, columns = cells[:, 0], cells[:, 1]
     there = reached[rows, columns]

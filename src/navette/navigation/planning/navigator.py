@@ -277,8 +277,8 @@ class Navigator:
             jumped
             or progress.off_path_m > self.params.deviation_m
             or (
-                # Before the robot has started, replanning costs nothing.
-                changed and (not self._set_out or not self._still_valid(plan, progress))
+                changed
+                and (self._plans_freely(plan) or not self._still_valid(plan, progress))
             )
         ):
             self._replan(robot.pose, self._goal)
@@ -288,6 +288,13 @@ class Navigator:
         if self._plan is not None and self._progress is not None:
             left = self._progress.distance_left_m
             self._set_status(Phase.FOLLOWING, distance_left_m=left)
+
+    def _plans_freely(self, plan: Plan) -> bool:
+        """Return whether a new plan costs nothing.
+
+        The robot has not started, and the search with headings is not needed.
+        """
+        return not self._set_out and plan.expansions == 0
 
     def _still_valid(self, plan: Plan, progress: PathProgress) -> bool:
         """Return whether the body still fits along the rest of the path."""

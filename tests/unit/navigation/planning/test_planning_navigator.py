@@ -216,6 +216,25 @@ def test_before_the_robot_starts_a_new_map_replans() -> None:
     assert drive.path[:, 1].max() < 5
 
 
+def test_before_the_robot_starts_a_search_with_headings_is_not_repeated() -> None:
+    drive = Drive(drive="ackermann", min_turning_radius_m=0.8)
+    drive.moving = False
+    drive.pose = Pose2(5, 4, math.pi)  # a car turns with several moves
+    drive.send(9, 4)
+    drive.step()
+    plans = drive.navigator.planner.plan
+    asked: list[Pose2] = []
+    drive.navigator.planner.plan = lambda start, *a, **k: (
+        asked.append(start) or plans(start, *a, **k)
+    )
+    drive.change_map((0.4, 0.6), (7, 7.2))  # far from the path
+    drive.step()
+    assert not asked
+    drive.change_map((8, 8.4), (3.5, 4.5))  # on it
+    drive.step()
+    assert asked
+
+
 def test_the_robot_does_not_oscillate_between_equal_paths() -> None:
     drive = Drive()
     drive.change_map((4.5, 5.5), (2.5, 5.5))
