@@ -19,6 +19,7 @@ from navette.navigation.grids.exact_clearance import body_distance, signed_dista
 Array = NDArray[np.float64]
 
 _STEP_M = 0.05  # largest motion of a body point between predicted poses
+_FINER = 5  # times as many of them where the body is within the margin
 _SLACK_M = 0.02  # a body within the margin may come this much closer …
 _FLOOR_M = 0.02  # … but not below this
 _ROUNDING_M = 1e-6
@@ -229,6 +230,8 @@ def free_motion(
     far = half_cell + horizon
     now = body_distance(points, outline, x, y, yaw, reach, far) - half_cell
     least = _least(now, margin)
+    if now < margin:  # a corner passes the body between coarse steps
+        poses *= _FINER
     for i in range(1, poses + 1):
         px, py, pyaw = _moved(motion, duration * i / poses)
         near = half_cell + least + _SLACK_M

@@ -3,8 +3,8 @@
 Poses are cells and headings, one bit each. Moves are straight, forward and in reverse,
 and to the next heading: in place, or along an arc; an omnidirectional drive also
 slides. Of the poses in a cell and heading the first continues, from its exact position,
-as in hybrid A* (Dolgov et al. 2008). Moves can be driven backwards, so that start and
-goal are flooded in turns (Pohl 1971): the smaller of two separate regions decides.
+as in hybrid A* (Dolgov et al. 2008). Start and goal, from which moves are undone, are
+flooded in turns (Pohl 1971): the smaller of two separate regions decides.
 """
 
 import math
@@ -27,21 +27,28 @@ Masks = NDArray[np.uint64]
 
 
 class DriveMoves(NamedTuple):
-    """What a drive can do: radius_m, of the tightest arc, is that of an Ackermann."""
+    """What a drive can do.
+
+    Attributes:
+        drive: differential, ackermann or omni.
+        radius_m: radius of the tightest arc of an Ackermann drive.
+        reverses: whether it drives in reverse, and sideways.
+    """
 
     drive: str
     radius_m: float
+    reverses: bool = True
 
     def table(self, size_m: float) -> NDArray[np.float64]:
         """Return moves (N, 3): cells, headings, direction from the heading in rad."""
+        ways = (1, -1) if self.reverses else (1,)
         if self.drive == ACKERMANN:
             chord = 2 * self.radius_m * math.sin(math.pi / HEADINGS) / size_m
-            arcs = [(way * chord, turn) for way in (1, -1) for turn in (0, 1, -1)]
-            moves = [(length, turn, 0.0) for length, turn in arcs]
+            moves = [(way * chord, turn, 0.0) for way in ways for turn in (0, 1, -1)]
         else:
-            sides = (0.0, math.pi / 2) if self.drive == OMNI else (0.0,)
-            ways = (_STRAIGHT, -_STRAIGHT)
-            moves = [(way, 0, side) for side in sides for way in ways]
+            sideways = self.drive == OMNI and self.reverses
+            sides = (0.0, math.pi / 2) if sideways else (0.0,)
+            moves = [(way * _STRAIGHT, 0, side) for side in sides for way in ways]
             moves += [(0.0, 1, 0.0), (0.0, -1, 0.0)]
         return np.array(moves, np.float64)
 
@@ -76,7 +83,9 @@ def find_drive_path(
         headings: indices of the headings at the ends.
         moves: those of the drive.
     """
-    steps = _steps(moves.table(size_m), start.yaw)
+    table = moves.table(size_m)
+    undone = table * (-1.0, -1.0, 1.0)
+    steps = _steps(np.array([table, undone]), start.yaw)
     begin = np.array([[start.x / size_m, start.y / size_m, 0.0]])
     bits = np.uint64(1) << headings.astype(np.uint64)
     nth, which = np.nonzero(open_[tuple(cells.T)][:, None] & bits)
@@ -104,8 +113,12 @@ def wrapped(yaw: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
 def _steps(
     table: NDArray[np.float64], yaw: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return du, dv in cells (headings, moves, 2), and the heading after each move."""
-    length, turn, aside = table.T
+    """Return du, dv in cells (2, headings, moves, 2), and the headings after them.
+
+    The first half of the tables (2, N, 3) is for the flood from the start, the second,
+    the same moves undone, for that from the ends.
+    """
+    length, turn, aside = np.moveaxis(table[:, None], -1, 0)
     heading = np.arange(HEADINGS)[:, None]
     along = yaw + (heading + 0.5 * turn) * HEADING_RAD + aside
     shift = np.stack([length * np.cos(along), length * np.sin(along)], axis=-1)
@@ -191,7 +204,7 @@ def _flood_both(
         position: (2, N, 2) u, v in cells; the first ``count`` of each are the ends.
         links: (2, N) index of the pose before · number of headings + heading.
         count: (2,) poses of each flood; grows.
-        shift: du, dv of each heading and move.
+        shift: du, dv of each flood, heading and move.
         after: heading after each.
 
     Returns:
@@ -208,13 +221,13 @@ def _flood_both(
         if reached[1 - side, int(v), int(u)] & bit:
             there = _find(position, links, 1 - side, count[1 - side], u, v, k)
             return (done, there) if side == 0 else (there, done)
-        for m in range(after.shape[1]):
+        for m in range(after.shape[2]):
             # As it is stored: rounded, a position may lie in the next cell.
-            x = np.float32(u + shift[k, m, 0])
-            y = np.float32(v + shift[k, m, 1])
+            x = np.float32(u + shift[side, k, m, 0])
+            y = np.float32(v + shift[side, k, m, 1])
             if not (0.0 <= x < width and 0.0 <= y < height):
                 continue
-            row, column, heading = int(y), int(x), after[k, m]
+            row, column, heading = int(y), int(x), after[side, k, m]
             new = one << np.uint64(heading)
             if reached[side, row, column] & new or not open_[row, column] & new:
                 continue

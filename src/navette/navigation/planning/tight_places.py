@@ -135,8 +135,10 @@ class TightPlanner:
                 space.close(self._closer.occupancy == UNKNOWN)
             if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
                 continue
-            path = space.drive_to(cells, moves, yaw, tolerance)
-            if path.poses is not None:
+            for each in (moves, moves._replace(reverses=False)):
+                path = space.drive_to(cells, each, yaw, tolerance)
+                if path.poses is None:
+                    break  # nor is there one without reversing
                 rough = self._rough_plan(path.poses, min(margin_m, _LEAST_M))
                 if rough is not None:
                     return rough

@@ -204,3 +204,24 @@ def test_below_the_floor_no_motion_comes_closer_at_all() -> None:
     assert check.clearance(ORIGIN) == pytest.approx(0.015)
     assert check.check(ORIGIN, (0.004, 0.0)).scale == 0.0
     assert check.check(ORIGIN, (-0.2, 0.0)).scale == 1.0
+
+
+def test_within_the_margin_no_edge_of_the_body_jumps_over_a_point() -> None:
+    """A narrow wheel passes a post; 5 cm before and after, both are clear of it."""
+    wheel = ((0.005, 0.3), (0.005, 0.312), (-0.005, 0.312), (-0.005, 0.3))
+    body = MovingBody(
+        footprint=Footprint(
+            ((0.5, -0.3), (0.5, 0.3), *wheel, (-0.5, 0.3), (-0.5, -0.3))
+        ),
+        margin_m=0.025,
+        horizon_m=0.5,
+        reaction_s=0.495,
+        deceleration_mps2=10.0,
+        turn_acceleration_radps2=2.0,
+    )
+    check = CollisionCheck(body)
+    check.set_obstacles(np.array([[0.025, 0.3215]]), 0.0)
+    assert check.check(Pose2(0.05, 0.0, 0.0), (0.0, 0.0)).clearance > 0.02
+    scale, clearance = check.check(ORIGIN, (0.1, 0.0))
+    assert clearance == pytest.approx(0.0215)
+    assert scale < 0.5
