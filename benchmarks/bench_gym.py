@@ -19,7 +19,7 @@ import numpy as np
 from bench_lidar import POST_RADIUS_M, irsim_world, posts
 from harness import Benchmark, Figure, optional
 
-import navette  # noqa: F401 - registers the environment
+import navette.navigation.gym  # noqa: F401 - registers the environment
 from navette.sim import Scene, World
 
 os.environ.setdefault("MPLBACKEND", "Agg")

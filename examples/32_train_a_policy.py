@@ -20,7 +20,7 @@ import cma
 import gymnasium
 import numpy as np
 
-import navette  # noqa: F401 - registers the environment
+import navette.navigation.gym  # noqa: F401 - registers the environment
 from navette.geometry import Pose2
 
 SECTORS, INPUTS = 16, 16 + 5

@@ -1,14 +1,14 @@
 """Gymnasium environments: the simulator as a task for learning.
 
-Gymnasium (from 1.0 on) looks for no entry points: an import registers them, that of
-``navette`` after Gymnasium's, or this one::
+Gymnasium (from 1.0 on) looks for no entry points. This import registers the
+environment; so does that of ``navette``, if it comes after Gymnasium's::
 
     import gymnasium
-    import navette
+    import navette.navigation.gym
 
     gymnasium.make("navette/Navigation-v0", world="barn-like", robot="jackal")
 
-Without either the id is ``navette:navette/Navigation-v0``.
+Without either the id is ``navette.navigation.gym:navette/Navigation-v0``.
 """
 
 from navette import register_environment

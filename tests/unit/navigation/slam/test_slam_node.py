@@ -264,14 +264,14 @@ def test_a_robot_that_stands_needs_no_more_memory() -> None:
         start(graph)
         standing = [
             STEPS[0]._replace(stamp_ns=STEPS[0].stamp_ns + index * 200_000_000)
-            for index in range(300)
+            for index in range(400)
         ]
         tracemalloc.start()
-        feed(graph, standing[:100])
-        gc.collect()
-        before, _ = tracemalloc.get_traced_memory()
-        feed(graph, standing[100:])
-        gc.collect()
-        after, _ = tracemalloc.get_traced_memory()
+        traced = []
+        for first in range(0, len(standing), 100):
+            feed(graph, standing[first : first + 100])
+            gc.collect()
+            traced.append(tracemalloc.get_traced_memory()[0])
         tracemalloc.stop()
-        assert (after - before) / 200 < 250, "bytes per scan"
+        # What is allocated once falls into one of the three; a leak is in each.
+        assert min(np.diff(traced)) / 100 < 250, "bytes per scan"
