@@ -42,6 +42,10 @@ _SET_OUT_M = 0.1
 _COMPARE_PERIOD_NS = 2_000_000_000
 # Least time between plans because the controller is blocked.
 _BLOCKED_PERIOD_NS = 1_000_000_000
+# Of the plans because of it from one place, every third keeps more clearance, each time
+# by so much, up to the most. What the controller measures differs by millimetres: it
+# would refuse the same path for ever.
+_BLOCKED_PLANS, _MORE_MARGIN_M, _MOST_MORE_M = 3, 0.01, 0.05
 # Within this distance of the path's end, every odometry is checked for arrival.
 _NEAR_END_M = 1.0
 
@@ -71,6 +75,7 @@ class Navigator:
         self._stepped_ns = self._compared_ns = 0
         self._blocked = False
         self._blocked_ns = -_BLOCKED_PERIOD_NS  # of the last plan because of it
+        self._blocked_plans = 0  # since the robot last drove
         self._set_out = False
         self._jumped = False
         self._paused_ns: int | None = None
@@ -258,20 +263,23 @@ class Navigator:
         assert self._goal is not None, "a path implies a goal"
         progress.update(robot.pose)
         self._checker.note(progress.covered, now_ns)
-        self._set_out |= progress.covered >= _SET_OUT_M
+        if progress.covered >= _SET_OUT_M:
+            self._set_out, self._blocked_plans = True, 0
         changed, self._map_changed = self._map_changed, False
         blocked, self._blocked = self._blocked, False
         jumped, self._jumped = self._jumped, False
         if self._checker.no_progress(now_ns):
             if self._checker.exhausted:
                 self._avoided.note_stuck(progress.ahead, self._front_m())
-                self._finish(Outcome.STUCK)
+                never = self._blocked_plans > 0 and not self._set_out
+                self._finish(Outcome.START_BLOCKED if never else Outcome.STUCK)
                 return
             # The path may have been lost: publish it again even if unchanged.
             self._published = None
             self._replan(robot.pose, self._goal)
         elif blocked and now_ns - self._blocked_ns >= _BLOCKED_PERIOD_NS:
             self._blocked_ns = now_ns
+            self._blocked_plans += 1
             self._replan(robot.pose, self._goal, exact_start=True)
         elif (
             jumped
@@ -324,7 +332,12 @@ class Navigator:
 
     def _replan(self, here: Pose2, goal: Goal, *, exact_start: bool = False) -> None:
         first = not self.report.plan
-        plan = self.planner.plan(here, goal, exact_start=exact_start)
+        more_m = self._more_margin_m() if exact_start else 0.0
+        plan = self.planner.plan(
+            here, goal, exact_start=exact_start, more_margin_m=more_m
+        )
+        if not plan.outcome.has_path and more_m > 0.0:  # what is in the way may move
+            plan = self.planner.plan(here, goal, exact_start=exact_start)
         if not plan.outcome.has_path and self._avoided.clear():
             self._apply_map()  # no other path exists
             plan = self.planner.plan(here, goal, exact_start=exact_start)
@@ -343,6 +356,11 @@ class Navigator:
         # The map may improve: retry until the attempts are exhausted.
         self._drop_path()
         self._set_status(Phase.PLANNING, plan=plan.outcome.value)
+
+    def _more_margin_m(self) -> float:
+        """Return the clearance that this plan keeps in addition to the tight one."""
+        times, rest = divmod(self._blocked_plans, _BLOCKED_PLANS)
+        return 0.0 if rest else min(times * _MORE_MARGIN_M, _MOST_MORE_M)
 
     def _accept(self, plan: Plan, here: Pose2) -> None:
         before = None if self._progress is None else self._progress.poses

@@ -102,18 +102,26 @@ class Planner:
         space = BodySpace(nothing, spec, body, start)
         space.reached_from(np.array([space.start]))
 
-    def plan(self, start: Pose2, goal: Goal, *, exact_start: bool = False) -> Plan:
+    def plan(
+        self,
+        start: Pose2,
+        goal: Goal,
+        *,
+        exact_start: bool = False,
+        more_margin_m: float = 0.0,
+    ) -> Plan:
         """Plan from ``start`` to ``goal``; without a path the outcome names the reason.
 
         If the body does not fit with its margin, or only on a long detour, the tight
         margin is tried. With ``exact_start`` the path begins with the heading of the
         start: a robot between obstacles cannot steer towards another heading.
+        ``more_margin_m`` is added to the tight margin and to the least one.
         """
         if exact_start and self._own is None:
             other = self.copy()
             other.params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
             other.router = self.router.with_params(other.params)
-            return other.plan(start, goal)
+            return other.plan(start, goal, more_margin_m=more_margin_m)
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)
@@ -121,7 +129,9 @@ class Planner:
             if self._own is not None:
                 return self._plan_own(self._own, start, goal)
             turn = self._plan_turn(start, goal)
-            return self._plan_or_squeeze(start, goal) if turn is None else turn
+            if turn is not None:
+                return turn
+            return self._plan_or_squeeze(start, goal, more_margin_m)
         except MethodFaultError as error:
             return Plan(Outcome.METHOD_FAILED, fault=str(error))
 
@@ -191,11 +201,11 @@ class Planner:
             return None
         return self._with_margin.planned(goal, poses, margin)
 
-    def _plan_or_squeeze(self, start: Pose2, goal: Goal) -> Plan:
+    def _plan_or_squeeze(self, start: Pose2, goal: Goal, more_margin_m: float) -> Plan:
         """Plan with the usual margin, else the tight one, else on finer cells."""
         params = self.params
         planner, quick = self._with_margin, quick_expansions(params)
-        usual, tight = params.clearance_margin_m, tight_margin_m(params)
+        usual, tight = params.clearance_margin_m, tight_margin_m(params, more_margin_m)
         plan = planner.plan(usual, start, goal, max_expansions=quick)
         direct = math.dist((start.x, start.y), (goal.x, goal.y))
         if plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M:
@@ -206,7 +216,9 @@ class Planner:
             plan = squeezed if squeezed.outcome.has_path and worth else plan
         if plan.outcome.has_path:
             return plan
-        return TightPlanner(params, self.map, self.put_down_at, start, goal).plan(plan)
+        return TightPlanner(
+            params, self.map, self.put_down_at, start, goal, more_margin_m=more_margin_m
+        ).plan(plan)
 
     @property
     def _with_margin(self) -> MarginPlanner:

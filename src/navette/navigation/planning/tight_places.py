@@ -51,9 +51,9 @@ def quick_expansions(params: PlannerParams) -> int:
     return max(LEAST_EXPANSIONS, params.max_expansions // _QUICK_SHARE)
 
 
-def tight_margin_m(params: PlannerParams) -> float:
+def tight_margin_m(params: PlannerParams, more_m: float = 0.0) -> float:
     """Return the margin where no path has the usual one."""
-    return min(params.tight_margin_m, params.clearance_margin_m)
+    return min(params.tight_margin_m + more_m, params.clearance_margin_m)
 
 
 class TightPlanner:
@@ -66,8 +66,12 @@ class TightPlanner:
         put_down_at: Pose2 | None,
         start: Pose2,
         goal: Goal,
+        *,
+        more_margin_m: float = 0.0,
     ) -> None:
         self.params, self.start, self.goal = params, start, goal
+        self._tight_m = tight_margin_m(params, more_margin_m)
+        self._least_m = _LEAST_M + more_margin_m
         self._map, self._put_down_at = prepared, put_down_at
         ends = np.array([(start.x, start.y), (goal.x, goal.y)])
         self._closer = close_map(
@@ -139,7 +143,7 @@ class TightPlanner:
                 path = space.drive_to(cells, each, yaw, tolerance)
                 if path.poses is None:
                     break  # nor is there one without reversing
-                rough = self._rough_plan(path.poses, min(margin_m, _LEAST_M))
+                rough = self._rough_plan(path.poses, min(margin_m, self._least_m))
                 if rough is not None:
                     return rough
             if not path.is_proof:
@@ -200,9 +204,9 @@ class TightPlanner:
         pose = np.array([[self.start.x, self.start.y, self.start.yaw]])
         outline = make_outline(self._map.footprint)
         obstacles = self._map.grid().exact_obstacles
-        tight = tight_margin_m(self.params)
-        here = float(exact_clearances(obstacles, outline, pose, tight + _SWAY_M)[0])
-        return min(tight, max(here - _SWAY_M, _LEAST_M))
+        most = self._tight_m + _SWAY_M
+        here = float(exact_clearances(obstacles, outline, pose, most)[0])
+        return min(self._tight_m, max(here - _SWAY_M, self._least_m))
 
     def _search(
         self,

@@ -26,6 +26,7 @@ from navette.navigation.planning.path_shape import (
 )
 
 PERIOD_NS = 500_000_000
+BODY_OF_HALF_A_METRE = (0.25, 0.25, -0.25, 0.25, -0.25, -0.25, 0.25, -0.25)
 
 
 class Drive:
@@ -189,6 +190,44 @@ def test_a_path_that_becomes_blocked_is_replaced() -> None:
     assert len(drive.published) == 2
     drive.steps(40)
     assert drive.message == Phase.REACHED
+
+
+def blocked_before_a_door(*, other_way: bool) -> Drive:
+    """A robot whose controller refuses the path through a door 5 cm to each side."""
+    drive = Drive(footprint_m=BODY_OF_HALF_A_METRE)
+    drive.pose, drive.moving = Pose2(4, 4, 0), False
+    drive.change_map((5.0, 5.2), (4.3, 8))
+    drive.change_map((5.0, 5.2), (1.5 if other_way else 0, 3.7))
+    drive.send(6, 4)
+    drive.step()
+    return drive
+
+
+def refuse(drive: Drive, times: int) -> None:
+    for _ in range(times):
+        drive.navigator.note_blocked()
+        drive.steps(2)
+
+
+def test_a_path_that_the_controller_refuses_is_replaced() -> None:
+    """What the controller measures differs by millimetres from the map."""
+    drive = blocked_before_a_door(other_way=True)
+    assert drive.path[:, 1].min() > 3.9
+    refuse(drive, 2)
+    assert drive.path[:, 1].min() > 3.9, "what is in the way may move"
+    paths = []
+    for _ in range(10):
+        refuse(drive, 1)
+        paths.append(drive.path)
+    assert min(path[:, 1].min() for path in paths) < 1.5
+
+
+def test_a_start_from_which_the_controller_refuses_every_path_is_named() -> None:
+    drive = blocked_before_a_door(other_way=False)
+    refuse(drive, 3)
+    assert len(drive.path), "there is no other"
+    refuse(drive, 300)
+    assert drive.message == Outcome.START_BLOCKED
 
 
 def test_map_changes_beside_the_path_keep_it() -> None:
