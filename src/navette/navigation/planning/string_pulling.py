@@ -90,14 +90,25 @@ def _line_cost(cost: Any, line: Any, factor: Any) -> float:
 
 def _cut(line: Points) -> Points:
     """Return the same line with points at most a cell and a half apart."""
-    steps = np.diff(line, axis=0)
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
-    counts = np.maximum(1, np.ceil(lengths - 0.5)).astype(np.int64)
-    piece = np.repeat(np.arange(len(counts)), counts)
-    first = np.cumsum(counts) - counts
-    part = (np.arange(len(piece)) - first[piece]) / counts[piece]
-    fine = line[piece] + part[:, None] * steps[piece]
-    return np.concatenate([fine, line[-1:]])
+    longest = math.ceil(float(np.abs(np.diff(line, axis=0)).sum()))
+    fine = np.empty((longest + len(line), 2))
+    return fine[: _cut_into(line, fine)]
+
+
+@kernel(allocates=False)
+def _cut_into(line: Any, fine: Any) -> int:
+    """Fill ``fine`` with the points of :func:`_cut`; return their number."""
+    last, filled = line.shape[0] - 1, 0
+    for i in range(last):
+        du, dv = line[i + 1, 0] - line[i, 0], line[i + 1, 1] - line[i, 1]
+        count = max(1, math.ceil(math.hypot(du, dv) - 0.5))
+        for k in range(count):
+            part = k / count
+            fine[filled, 0] = line[i, 0] + part * du
+            fine[filled, 1] = line[i, 1] + part * dv
+            filled += 1
+    fine[filled, 0], fine[filled, 1] = line[last, 0], line[last, 1]
+    return filled + 1
 
 
 @kernel(allocates=False)
