@@ -61,6 +61,8 @@ _END_YAW_RAD = 0.08
 # This near to a change of direction, a robot that drives in the new direction at this
 # speed has made it.
 _CUSP_M, _CUSP_MPS = 0.25, 0.05
+# Commands below these for this long: no rollout is better than to stand.
+_STILL_MPS, _STILL_RADPS, _STILL_S = 0.02, 0.05, 2.0
 
 
 class _Mode(NamedTuple):
@@ -103,6 +105,7 @@ class PredictiveFollower(BaseFollower):
         self._last_turn: TurnInPlace | None = None
         self._cross_track = self._heading_error = 0.0
         self._sampled_at: MotionState | None = None  # of the last step
+        self._still_s = 0.0
         self._mode.mppi.reset()
 
     @property
@@ -192,6 +195,10 @@ class PredictiveFollower(BaseFollower):
         output = self._keep_clear(inputs.pose, eased)
         if output.state == ControlState.BLOCKED and last == STOP:
             return self._free_start(inputs, dt) or output
+        self._still_s = self._still_s + dt if _is_still(output.command) else 0.0
+        if self._still_s > _STILL_S and not len(discs):
+            # The planner may know another path.
+            return output._replace(state=ControlState.BLOCKED)
         return output
 
     def rollouts(self, most: int) -> Rollouts | None:
@@ -378,6 +385,11 @@ def _nearest_index(
         if best == at or best + 1 < i:
             return best
         at = best
+
+
+def _is_still(command: VelocityCommand) -> bool:
+    speed = max(abs(command.speed), abs(command.side))
+    return speed < _STILL_MPS and abs(command.turn_rate) < _STILL_RADPS
 
 
 def _cusp_made(path: PathWindow, at: int, speed: float) -> int | None:
