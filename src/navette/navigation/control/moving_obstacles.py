@@ -47,18 +47,18 @@ def counts_as_static(
     """Return (N,) which measured points (N, 2) are obstacles where they are.
 
     All but the returns of moving obstacles, which are avoided where they will be.
-    Within the distance that the robot requires to stop, the returns of receding ones
-    count, too: a surface of which more and more is seen looks as if it receded.
+    Within the circle around the body all count, and within the distance that the robot
+    requires to stop also those of receding ones: a surface of which more and more is
+    seen looks as if it moved.
     """
     speed = abs(speed_mps)
     stop_m = speed * (params.reaction_s + speed / (2 * params.deceleration_mps2))
     body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
-    near_m = body_m + stop_m + _NEAR_M
-    near = np.hypot(points[:, 0] - pose.x, points[:, 1] - pose.y) <= near_m
+    off_m = np.hypot(points[:, 0] - pose.x, points[:, 1] - pose.y) - body_m
     away = (discs[:, 0] - pose.x) * discs[:, 2] + (discs[:, 1] - pose.y) * discs[:, 3]
     receding = inside_discs(points, discs[away > 0], _RETURNS_M)
     coming = inside_discs(points, discs[away <= 0], _RETURNS_M)
-    return np.asarray(~coming & (near | ~receding))
+    return (off_m <= 0.0) | ~coming & ((off_m <= stop_m + _NEAR_M) | ~receding)
 
 
 @kernel(nogil=True, fastmath=True)
