@@ -9,6 +9,8 @@ import math
 import socket
 import time
 
+from navette.cli.gc_tuning import collect, uncollected
+
 BEGIN = time.perf_counter()
 MOVES_MPS = 0.05
 
@@ -21,6 +23,11 @@ def free_port() -> int:
 
 
 def main() -> None:
+    with uncollected():  # as the command line
+        run()
+
+
+def run() -> None:
     from navette.msgs.nav_msgs.msg import Odometry
     from navette.navigation.stack import RunOptions, demo_goals
     from navette.navigation.stack.simulation import Simulation
@@ -41,6 +48,7 @@ def main() -> None:
 
     watcher.create_subscription(Odometry, "/ground_truth", stop_when_moving, 10)
     simulation.executor.add_node(watcher)
+    collect()
     simulation.run()
     moving = time.perf_counter()
     assert simulation.context.clock.now_ns < 60e9, "never moved"

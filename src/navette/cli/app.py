@@ -184,7 +184,7 @@ def app(
         os.environ["NAVETTE_RUN"] = run
 
 
-@app.command(panel=DRIVE)
+@app.command(panel=DRIVE, imports_in_call=True)
 def demo(
     robot: Robot = None,
     sensor: Sensors = None,
@@ -216,7 +216,7 @@ def demo(
     _run(methods.applied_to(view.applied_to(options)), as_json=False)
 
 
-@app.command(panel=DRIVE)
+@app.command(panel=DRIVE, imports_in_call=True)
 def sim(
     world: World = "arena",
     robot: Robot = None,

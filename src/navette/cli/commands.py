@@ -19,6 +19,8 @@ class AnnotatedCommand(click.Command):
 
     Args:
         panel: heading of the command in its group's help.
+        imports_in_call: the function imports the stack, and calls
+            :func:`~navette.cli.gc_tuning.collect` when all nodes exist.
     """
 
     def __init__(
@@ -28,6 +30,7 @@ class AnnotatedCommand(click.Command):
         callback: Verb | None = None,
         params: list[click.Parameter] | None = None,
         panel: str = "Commands",
+        imports_in_call: bool = False,
         **attributes: Any,
     ) -> None:
         if callback is not None:
@@ -39,6 +42,7 @@ class AnnotatedCommand(click.Command):
 
         super().__init__(name, callback=callback, params=params, **attributes)
         self.panel = panel
+        self.imports_in_call = imports_in_call
 
     def get_help(self, ctx: click.Context) -> str:
         from navette.cli.help_page import help_page
@@ -105,7 +109,8 @@ class LazyGroup(Group):
             command = command.load()
         if not read_only:
             raise_at_interrupt()
-            collect()
+            if not (isinstance(command, AnnotatedCommand) and command.imports_in_call):
+                collect()
         return name, command, rest
 
     def invoke(self, ctx: click.Context) -> Any:

@@ -20,9 +20,15 @@ def uncollected() -> Iterator[None]:
     try:
         yield
     finally:
+        gc.unfreeze()
         gc.enable()
 
 
 def collect() -> None:
-    """Enable the collector: the imports are done."""
-    gc.enable()
+    """Enable the collector, for new objects only: the imports are done.
+
+    Without effect where the collector is enabled, as in a program that calls a verb.
+    """
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from navette.cli.gc_tuning import collect
 from navette.cli.interruption import INTERRUPTED, sigterm_as_interrupt
 from navette.cli.status import StatusScreen
 from navette.errors import CallbackError
@@ -31,6 +32,7 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
 
         prepare(options, screen.show_line, screen.show_progress)
         simulation = make_simulation(options, screen.on_change)
+    collect()
     try:
         return _drive(simulation, screen, as_json=as_json)
     finally:
