@@ -3,6 +3,7 @@
 import gzip
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.resources.abc import Traversable
 from pathlib import PurePosixPath
 
@@ -22,8 +23,11 @@ _TYPES = {
 class PageFile:
     content_type: str
     body: bytes
-    compressed: bytes
-    """The body as gzip."""
+
+    @cached_property
+    def compressed(self) -> bytes:
+        """The body as gzip, packed at the first request: not while a robot starts."""
+        return gzip.compress(self.body, 6, mtime=0)
 
 
 def read_page(folder: Traversable) -> Mapping[str, PageFile]:
@@ -31,10 +35,8 @@ def read_page(folder: Traversable) -> Mapping[str, PageFile]:
     files = {}
     for path, file in _walk(folder, "/"):
         kind = _TYPES.get(PurePosixPath(path).suffix)
-        if kind is None:
-            continue
-        body = file.read_bytes()
-        files[path] = PageFile(kind, body, gzip.compress(body, 6, mtime=0))
+        if kind is not None:
+            files[path] = PageFile(kind, file.read_bytes())
     if "/index.html" in files:
         files["/"] = files["/index.html"]
     return files

@@ -120,7 +120,7 @@ def test_tokens_are_in_the_address_or_a_header(
 # -- origins -------------------------------------------------------------------------
 
 
-PAGE = PageFile("text/html", b"page", b"page")
+PAGE = PageFile("text/html", b"page")
 
 
 class Notes:
