@@ -33,6 +33,7 @@ class ClearanceProbe:
         self._obstacles = obstacles
         self._fixed = np.array(model.geom_bodyid)[obstacles] == 0
         self._parts = np.flatnonzero(compiled.is_robot & _meets_obstacles(model))
+        self._part_radius = np.array(model.geom_rbound)[self._parts]
         self._low, self._high = bounds_of(model, data, obstacles)
         self._radius = np.array(model.geom_rbound)[obstacles]
         self.reach = self._farthest(data)
@@ -41,8 +42,7 @@ class ClearanceProbe:
         """Upper bound of the distance from the root body to the robot's surface (m)."""
         root = data.xpos[self._compiled.robot.root_body]
         away = np.linalg.norm(data.geom_xpos[self._parts] - root, axis=1)
-        radius = self._compiled.model.geom_rbound[self._parts]
-        return float((away + radius).max())
+        return float((away + self._part_radius).max())
 
     def measure(self, data: mujoco.MjData) -> Clearance:
         """Return the nearest obstacle (kinematics must be up to date)."""
@@ -66,10 +66,10 @@ class ClearanceProbe:
 
     def _lowerbounds_of(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Return a lower bound of the distance for each obstacle."""
-        radius = self._compiled.model.geom_rbound[self._parts]
         centres = data.geom_xpos[self._parts]
-        centre = centres.mean(axis=0)
-        around = float((np.linalg.norm(centres - centre, axis=1) + radius).max())
+        centre = centres.sum(axis=0) / len(centres)
+        away = np.linalg.norm(centres - centre, axis=1)
+        around = float((away + self._part_radius).max())
         low, high = self._low, self._high
         if not self._fixed.all():
             moving = ~self._fixed

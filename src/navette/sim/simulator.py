@@ -51,11 +51,11 @@ from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
 _TOUCHES_M = 0.01  # a world's own robot may touch obstacles, but not overlap them
 
-_BLOWN_UP = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
+_BLOWN_UP = [
+    int(mujoco.mjtWarning.mjWARN_BADQPOS),
+    int(mujoco.mjtWarning.mjWARN_BADQVEL),
+    int(mujoco.mjtWarning.mjWARN_BADQACC),
+]
 
 
 class Simulator:
@@ -291,12 +291,11 @@ class Simulator:
 
     def _check_physics(self) -> None:
         """Raise if the state diverged; MuJoCo itself would reset it silently."""
-        for warning in _BLOWN_UP:
-            if self._data.warning[warning].number:
-                raise InvalidValueError(
-                    "physics became unstable: check for extreme masses, sizes or "
-                    f"speeds in the robot's model ({self.now_ns / 1e9:.3f} s)"
-                )
+        if self._data.warning.number[_BLOWN_UP].any():
+            raise InvalidValueError(
+                "physics became unstable: check for extreme masses, sizes or speeds in "
+                f"the robot's model ({self.now_ns / 1e9:.3f} s)"
+            )
 
     def _refresh(self) -> None:
         """Update body and geom poses to the current state."""
