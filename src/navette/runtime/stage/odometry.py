@@ -1,7 +1,6 @@
 """Pose of the robot's base in the map frame, from odometry and tf."""
 
 import math
-from bisect import bisect_right
 from collections import deque
 
 from navette.errors import InvalidInputError
@@ -132,7 +131,9 @@ class PoseTracker:
         history = self._history
         if not history or not history[0][0] <= stamp_ns <= history[-1][0]:
             return None
-        index = bisect_right(history, stamp_ns, key=lambda entry: entry[0])
+        index = len(history)
+        while history[index - 1][0] > stamp_ns:  # stamps are those of the last messages
+            index -= 1
         before_ns, before = history[index - 1]
         if before_ns == stamp_ns:
             return self._on_map(before)
