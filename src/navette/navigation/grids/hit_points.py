@@ -41,7 +41,11 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
     Raises:
         InvalidValueError: no x and y of type float32, or data of another size.
     """
-    x, y = _checked_offsets(msg)
+    return _points(msg, *_checked_offsets(msg))
+
+
+def _points(msg: PointCloud2, x: int, y: int) -> NDArray[np.float64]:
+    """Return the finite points; x and y are at these offsets in each, bytes."""
     rows = np.asarray(msg.data, np.uint8).view(_row_type(x, y, msg.point_step))
     points = np.empty((len(rows), 2))
     points[:, 0], points[:, 1] = rows["x"], rows["y"]
@@ -86,8 +90,10 @@ class HitPoints:
     """The newest clouds by stamp, for the grids of the same stamps."""
 
     def __init__(self) -> None:
-        # Converted on first use: most are not used.
-        self._clouds: dict[int, PointCloud2 | NDArray[np.float64]] = {}
+        # Converted on first use: most are not used. Until then with the offsets.
+        self._clouds: dict[
+            int, tuple[PointCloud2, tuple[int, int]] | NDArray[np.float64]
+        ] = {}
 
     def clear(self) -> None:
         """Drop all clouds."""
@@ -99,11 +105,11 @@ class HitPoints:
         Raises:
             InvalidValueError: it is invalid; see :func:`points_from_message`.
         """
-        _checked_offsets(msg)
+        offsets = _checked_offsets(msg)
         stamp = msg.header.stamp
         stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
         self._clouds.pop(stamp_ns, None)  # of an earlier run: now the newest
-        self._clouds[stamp_ns] = msg
+        self._clouds[stamp_ns] = msg, offsets
         while len(self._clouds) > _KEPT:
             del self._clouds[next(iter(self._clouds))]
         return stamp_ns
@@ -113,5 +119,6 @@ class HitPoints:
         found = self._clouds.get(stamp_ns)
         if found is None or isinstance(found, np.ndarray):
             return found
-        points = self._clouds[stamp_ns] = points_from_message(found)
+        msg, offsets = found
+        points = self._clouds[stamp_ns] = _points(msg, *offsets)
         return points

@@ -90,7 +90,7 @@ class ObstacleTracker:
 
     def configure(self, footprint: Footprint, hand_m: float) -> None:
         """Replace the outline and the width."""
-        self._footprint, self._hand_m = footprint, hand_m
+        self._start = StartArea.of(footprint, Pose2(0.0, 0.0, 0.0), hand_m)
 
     def reset(self) -> None:
         """Forget all costmaps and the map."""
@@ -227,7 +227,7 @@ class ObstacleTracker:
         layers = (here,) if self._seen is None else (self._seen, here)
         first = self._poses.first
         assert first is not None, "the pose is known"
-        start = StartArea.of(self._footprint, first, self._hand_m)
+        start = self._start._replace(map_T_base=first)
         return unseen_points(layers, start, around, reach_m)
 
     def _placement(self, msg: OccupancyGrid) -> Pose2 | None:

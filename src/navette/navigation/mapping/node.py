@@ -427,7 +427,7 @@ class MapMemoryNode(StageNode):
         self.drop_input(topics.COSTMAP.name, InvalidInputError(reason, detail))
 
     def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
+        return self.get_clock().now_ns
 
 
 def _tilt_of(q: Quaternion) -> float:

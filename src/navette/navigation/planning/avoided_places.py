@@ -4,6 +4,7 @@ What stopped the robot may be invisible to its sensors. The place ahead of it co
 an obstacle until the goal is reached, another goal is given, or no other path exists.
 """
 
+import copy
 import math
 
 import numpy as np
@@ -25,6 +26,12 @@ class AvoidedPlaces:
         self._candidate: Point | None = None
         self._places: list[Point] = []
         self._goal: Point | None = None
+
+    def copy(self) -> "AvoidedPlaces":
+        """Return places that change independently."""
+        other = copy.copy(self)
+        other._places = self._places.copy()
+        return other
 
     def __bool__(self) -> bool:
         return bool(self._places)

@@ -84,7 +84,7 @@ class Navigator:
         """Return a navigator in the same state that changes independently."""
         other = copy.copy(self)
         other.planner = self.planner.copy()
-        other._avoided = copy.deepcopy(self._avoided)
+        other._avoided = self._avoided.copy()
         other._progress = copy.copy(self._progress)
         other._checker = copy.copy(self._checker)
         return other
