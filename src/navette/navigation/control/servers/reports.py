@@ -105,7 +105,7 @@ class ControlReports:
         if found is not None or self._has_rollouts:
             header = Header(frame_id=node.params.map_frame, stamp=ns_to_stamp(now_ns))
             message = rollout_markers(found, header)
-            node.publish(topics.TRAJECTORIES.name, message)
+            node.hand_over(topics.TRAJECTORIES.name, message)
         self._has_rollouts = found is not None
 
     def _explain(self, state: ControlState) -> None:
