@@ -104,6 +104,12 @@ class BaseFollower(Follower):
         self._body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius
         self.reset()
 
+    def warm_up(self) -> None:
+        """Load or compile the kernels before the first path; a user's method has none.
+
+        A robot that drives would wait for them between two commands.
+        """
+
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
         self._rest: ControlState | None = rest  # None while a path is followed
         self._last: VelocityCommand | None = None
@@ -212,3 +218,13 @@ def nearest_index(
         at += best
         if best == 0 or at + 1 < stop:
             return at
+
+
+def try_out(trial: Follower) -> None:
+    """Drive a follower past an obstacle for a step, then before a moving one, too."""
+    along = np.linspace(0.0, 1.0, 21)
+    trial.set_path(np.column_stack([along, 0.0 * along, 0.0 * along]))
+    trial.set_obstacles(np.array([(0.5, 1.0)]), 0.01)
+    for discs in (NO_DISCS, np.array([(1.0, 1.0, 0.1, 0.0, 0.2)])):
+        trial.set_moving(discs)
+        trial.step(FollowerInputs(Pose2(0.0, 0.0, 0.0), 0.1, 0.0), 0.05)

@@ -23,6 +23,7 @@ from navette.msgs.nav2_msgs.msg import SpeedLimit
 from navette.msgs.nav_msgs.msg import Odometry, Path
 from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.explanations import Situation
+from navette.navigation.control.follower import BaseFollower
 from navette.navigation.control.followers import make_follower
 from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap
 from navette.navigation.control.moving_obstacles import counts_as_static
@@ -122,6 +123,8 @@ class ControlNode(MotionNode):
         super().__init__("control", **kwargs)
         params = self.params
         self._follower = make_follower(params)
+        if isinstance(self._follower, BaseFollower):
+            self._follower.warm_up()
         self._speed_limits = NO_CAP
         self._path = np.empty((0, 3))
         self._follows_goal = False  # the path is that of a follow_path goal …

@@ -1,5 +1,6 @@
 """The controller: follow a path piece by piece."""
 
+import copy
 import math
 
 import numpy as np
@@ -13,6 +14,7 @@ from navette.navigation.control.follower import (
     BLOCKED_SCALE,
     BaseFollower,
     TrackingErrors,
+    try_out,
 )
 from navette.navigation.control.limits import (
     STOP,
@@ -49,6 +51,9 @@ class PathFollower(BaseFollower):
     def __init__(self, params: ControlParams) -> None:
         self._parts = ControllerParts.of(params)
         super().__init__(params, self._parts.collision)
+
+    def warm_up(self) -> None:
+        try_out(copy.deepcopy(self))
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
         super().reset(rest)

@@ -1,5 +1,6 @@
 """Follow a path by model-predictive path integral control."""
 
+import copy
 import math
 from dataclasses import replace
 from typing import NamedTuple
@@ -16,6 +17,7 @@ from navette.navigation.control.follower import (
     BLOCKED_SCALE,
     BaseFollower,
     TrackingErrors,
+    try_out,
 )
 from navette.navigation.control.limits import (
     STOP,
@@ -97,6 +99,9 @@ class PredictiveFollower(BaseFollower):
         self._mode = self._calm
         self._field = open_field()
         super().__init__(params, self._parts.collision)
+
+    def warm_up(self) -> None:
+        try_out(copy.deepcopy(self))
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
         super().reset(rest)

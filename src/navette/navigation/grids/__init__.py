@@ -52,6 +52,7 @@ from navette.navigation.grids.moving_discs import (
     inside_discs,
     without_discs,
 )
+from navette.navigation.grids.obstacle_trial import load_obstacle_kernels
 from navette.navigation.grids.obstacles import (
     Obstacles,
     ObstacleTracker,
@@ -113,6 +114,7 @@ __all__ = [
     "Outline",
     "ObstacleGrid",
     "make_outline",
+    "load_obstacle_kernels",
     "make_obstacles",
     "exact_clearance",
     "exact_clearances",

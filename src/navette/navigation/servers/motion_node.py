@@ -12,6 +12,7 @@ from navette.navigation.grids import (
     Obstacles,
     ObstacleTracker,
     grid_from_message,
+    load_obstacle_kernels,
 )
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.shared_params import MotionParams
@@ -69,6 +70,7 @@ class MotionNode(StageNode):
         super().__init__(node_name, **kwargs)
         self._odometry_period, self._costmap_period = InputPeriod(), InputPeriod()
         self._start_tracking()
+        load_obstacle_kernels(Footprint.from_flat(self.params.footprint_m))
 
     def on_costmap_points(self, msg: PointCloud2) -> None:
         """Store where the beams of a costmap ended."""
