@@ -18,9 +18,10 @@ from navette.geometry import ACKERMANN, OMNI, Pose2
 
 HEADINGS = 64
 HEADING_RAD = math.tau / HEADINGS
-_MOST_POSES = 16_000_000  # of one flood, at 12 bytes
+_MOST_WAITING = 2_000_000  # poses whose moves are still to be made, of one flood
 _AROUND = 4  # cells beside two floods' path in which one exact path is looked for
 _STRAIGHT = 1.5  # cells of a straight motion: it always leaves its cell
+_MOST_MOVES = 8  # of a drive
 
 Masks = NDArray[np.uint64]
 """(H, W) a bit for each heading."""
@@ -93,14 +94,17 @@ def find_drive_path(
     met = _flood(open_, begin, ends, steps, both=True)
     if not met.chains:
         return DrivePath(None, is_proof=met.is_complete)
-    # Where two floods meet they are off by a part of a cell: one along them is exact.
+    # Where two floods meet they are off by a part of a cell: one along them is exact,
+    # or one from the start to all poses decides.
     corridor = np.zeros_like(open_)
-    for uv in met.chains:
-        _copy_around(corridor, open_, uv.astype(np.int64))
+    for chain in met.chains:
+        _copy_around(corridor, open_, chain[:, :2])
     exact = _flood(corridor, begin, ends, steps, both=False)
     if not exact.chains:
-        return DrivePath(None, is_proof=False)
-    path = exact.chains[0]
+        exact = _flood(open_, begin, ends, steps, both=False)
+    if not exact.chains:
+        return DrivePath(None, is_proof=exact.is_complete)
+    path = _replayed(begin[0], exact.chains[0], steps)
     yaw = wrapped(start.yaw + path[:, 2] * HEADING_RAD)
     return DrivePath(np.column_stack([path[:, :2] * size_m, yaw]), is_proof=True)
 
@@ -129,12 +133,13 @@ class _Meeting(NamedTuple):
     """Result of floods from a start and from ends.
 
     Attributes:
-        chains: (M, 3) u, v in cells and heading from the start to where they met, and
-            (K, 3) from an end to there; empty if they did not meet.
-        is_complete: there was room for all poses.
+        chains: (M, 4) row, column, heading and the move to there, from the start to
+            where the floods met, and (K, 4) from an end to there; empty if they did
+            not meet.
+        is_complete: all poses were reached that can be.
     """
 
-    chains: tuple[NDArray[np.float64], ...]
+    chains: tuple[NDArray[np.int64], ...]
     is_complete: bool
 
 
@@ -147,80 +152,109 @@ def _flood(
     both: bool,
 ) -> _Meeting:
     """Flood from poses (N, 3) u, v, heading: from both ends in turns, or the start."""
-    position = np.empty((2, _MOST_POSES, 2), np.float32)
-    links = np.empty((2, _MOST_POSES), np.uint32)
+    waiting = np.empty((2, _MOST_WAITING, 3), np.float32)
     count, reached = np.zeros(2, np.int64), np.zeros((2, *open_.shape), np.uint64)
+    # Pages of what is not reached are never touched.
+    origin = np.zeros((2, *open_.shape, HEADINGS), np.uint8)
     for side, poses in enumerate((start, ends)):
         count[side] = n = len(poses)
-        position[side, :n] = poses[:, :2]
-        column, row, heading = poses.astype(np.int64).T
-        links[side, :n] = np.arange(n) * HEADINGS + heading
+        waiting[side, :n] = poses
+        column, row, heading = waiting[side, :n].astype(np.int64).T  # as it is rounded
         bits = np.uint64(1) << heading.astype(np.uint64)
         np.bitwise_or.at(reached[side], (row, column), bits)
-    met = _flood_both(open_, reached, position, links, count, *steps, both)
+    *met, is_complete = _flood_both(
+        open_, reached, origin, waiting, count, *steps, both
+    )
     if met[0] < 0:
-        return _Meeting((), bool(count.max() < _MOST_POSES))
-    chains = []
-    for side in range(2):
-        nth = _chain(links[side], met[side])[::-1]
-        heading = links[side, nth] % HEADINGS
-        chains.append(np.column_stack([position[side, nth], heading]))
+        return _Meeting((), is_complete)
+    chains = (_chain(origin, side, met, steps) for side in range(2))
     return _Meeting(tuple(chains), is_complete=True)
 
 
 def _copy_around(to: Masks, of: Masks, cells: NDArray[np.int64]) -> None:
-    """Copy the cells (N, 2: column, row) and those around them."""
+    """Copy the cells (N, 2: row, column) and those around them."""
     height, width = of.shape
     for i, j in np.ndindex(2 * _AROUND + 1, 2 * _AROUND + 1):
-        rows = (cells[:, 1] + i - _AROUND).clip(0, height - 1)
-        columns = (cells[:, 0] + j - _AROUND).clip(0, width - 1)
+        rows = (cells[:, 0] + i - _AROUND).clip(0, height - 1)
+        columns = (cells[:, 1] + j - _AROUND).clip(0, width - 1)
         to[rows, columns] = of[rows, columns]
 
 
-def _chain(links: NDArray[np.uint32], last: int) -> list[int]:
-    """Return the poses from one back to that where its flood began."""
-    chain = [last]
-    while (before := int(links[chain[-1]]) // HEADINGS) != chain[-1]:
-        chain.append(before)
-    return chain
+def _chain(
+    origin: NDArray[np.uint8],
+    side: int,
+    last: list[int],
+    steps: tuple[NDArray[np.float64], NDArray[np.int64]],
+) -> NDArray[np.int64]:
+    """Return (M, 4) row, column, heading, move from where a flood began to a pose."""
+    shift, after = steps
+    (row, column, k), rows = last, []
+    while code := int(origin[side, row, column, k]):
+        move = (code - 1) % _MOST_MOVES
+        rows.append((row, column, k, move))
+        k = int(k - after[side, 0, move]) % HEADINGS
+        du, dv = shift[side, k, move].tolist()
+        more = (code - 1) // _MOST_MOVES
+        row += math.floor(-dv) + more // 4 - 1
+        column += math.floor(-du) + more % 4 - 1
+    return np.array([(row, column, k, 0), *rows[::-1]], np.int64)
+
+
+def _replayed(
+    start: NDArray[np.float64],
+    chain: NDArray[np.int64],
+    steps: tuple[NDArray[np.float64], NDArray[np.int64]],
+) -> NDArray[np.float64]:
+    """Return the exact poses (M, 3) u, v, heading of a flood's chain from the start."""
+    shift, after = steps[0][0], steps[1][0]
+    poses = np.empty((len(chain), 3), np.float32)
+    poses[0] = start
+    for i, (k, move) in enumerate(zip(chain[:-1, 2], chain[1:, 3], strict=True)):
+        poses[i + 1, :2] = poses[i, :2] + shift[k, move]
+        poses[i + 1, 2] = after[k, move]
+    return poses.astype(np.float64)
 
 
 @kernel(allocates=False)
 def _flood_both(
     open_: Masks,
     reached: Any,
-    position: Any,
-    links: Any,
+    origin: Any,
+    waiting: Any,
     count: Any,
     shift: Any,
     after: Any,
     both: bool,
-) -> tuple[int, int]:
+) -> tuple[int, int, int, bool]:
     """Reach poses by moves, breadth first, from both ends in turns or from the first.
 
     Args:
         open_: open poses.
         reached: (2, H, W) the ends; becomes what each flood reaches.
-        position: (2, N, 2) u, v in cells; the first ``count`` of each are the ends.
-        links: (2, N) index of the pose before · number of headings + heading.
+        origin: (2, H, W, headings) 0; becomes how each pose was reached, see below.
+        waiting: (2, N, 3) u, v in cells, heading; the first ``count`` are the ends.
+            Used in a circle.
         count: (2,) poses of each flood; grows.
         shift: du, dv of each flood, heading and move.
         after: heading after each.
 
     Returns:
-        One pose of each flood in the same cell and heading; −1 if one flood ends, or
-        has no room, before they meet.
+        Row, column and heading where the floods meet, else −1 and whether all poses
+        were reached that can be.
+
+    A pose is reached from the cell that lies ``floor(-shift)`` away, or the next, as
+    within both cells the positions are any. ``origin`` is 1 + the move + the number of
+    moves · (4 · rows + columns), these + 1 as rounded positions may add another cell.
     """
     height, width = open_.shape
-    one = np.uint64(1)
+    one, room = np.uint64(1), waiting.shape[1]
     done, other_done, side = 0, 0, 0
     while done < count[side]:
-        u, v = position[side, done, 0], position[side, done, 1]
-        k = links[side, done] % HEADINGS
+        u, v = waiting[side, done % room, 0], waiting[side, done % room, 1]
+        k = int(waiting[side, done % room, 2])
         bit = one << np.uint64(k)
         if reached[1 - side, int(v), int(u)] & bit:
-            there = _find(position, links, 1 - side, count[1 - side], u, v, k)
-            return (done, there) if side == 0 else (there, done)
+            return int(v), int(u), k, True
         for m in range(after.shape[2]):
             # As it is stored: rounded, a position may lie in the next cell.
             x = np.float32(u + shift[side, k, m, 0])
@@ -234,27 +268,18 @@ def _flood_both(
             middle = open_[int(0.5 * (v + y)), int(0.5 * (u + x))]
             if not middle & (bit | new):
                 continue
-            at = count[side]
-            if at == links.shape[1]:
-                return -1, -1
+            if count[side] - done == room:
+                return -1, -1, -1, False
+            rows = int(v) - row - math.floor(-shift[side, k, m, 1]) + 1
+            columns = int(u) - column - math.floor(-shift[side, k, m, 0]) + 1
+            code = 1 + m + _MOST_MOVES * (4 * rows + columns)
+            origin[side, row, column, heading] = code
             reached[side, row, column] |= new
-            position[side, at, 0], position[side, at, 1] = x, y
-            links[side, at] = done * HEADINGS + heading
-            count[side] = at + 1
+            at = count[side] % room
+            waiting[side, at, 0], waiting[side, at, 1] = x, y
+            waiting[side, at, 2] = heading
+            count[side] += 1
         done += 1
         if both:
             done, other_done, side = other_done, done, 1 - side
-    return -1, -1
-
-
-@kernel(allocates=False)
-def _find(
-    position: Any, links: Any, side: int, count: int, u: float, v: float, k: int
-) -> int:
-    """Return the pose of a flood in the cell of (u, v) with heading k."""
-    for n in range(count):
-        if links[side, n] % HEADINGS != k:
-            continue
-        if int(position[side, n, 0]) == int(u) and int(position[side, n, 1]) == int(v):
-            return n
-    return -1
+    return -1, -1, -1, True
