@@ -188,7 +188,7 @@ def _free_between(
             at = last - step * frame.resolution
             row, column = int(v + at * dv), int(u + at * du)
             if 0 <= row < height and 0 <= column < width:
-                flat[row * width + column] = FREE
+                flat[np.uintp(row * width + column)] = FREE
 
 
 @kernel(allocates=False)
@@ -239,7 +239,7 @@ def _free_line(
     at = r0 * width + c0
     error = along // 2
     for _ in range(int(share * along + 0.5)):
-        flat[at] = FREE
+        flat[np.uintp(at)] = FREE
         at += major
         error += across
         if error >= along:
@@ -247,4 +247,4 @@ def _free_line(
             error -= along
     # The last cell: free without a hit; with one, overwritten as lethal afterwards.
     if share >= 1.0:
-        flat[at] = FREE
+        flat[np.uintp(at)] = FREE
