@@ -13,7 +13,7 @@ from navette.navigation.grids import grid_from_message
 
 # The palette of the live view.
 FREE, UNKNOWN, COST = "#ffffff", "#ece8e0", "#a9b0b8"
-INK, QUIET, THREAD, LASER = "#1c2025", "#67707b", "#c9430c", "#11798c"
+INK, QUIET, THREAD, LASER = "#1c2025", "#67707b", "#bf3e0a", "#11798c"
 
 Points = NDArray[np.float64]
 

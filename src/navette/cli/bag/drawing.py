@@ -10,7 +10,7 @@ from navette.errors import FileFormatError, InvalidValueError, MissingPartError
 
 SUFFIXES = (".png", ".svg", ".pdf")
 # The live view's colours, distinguishable without colour vision.
-_COLOURS = ("#c9430c", "#0b7285", "#5f3dc4", "#1f8a4c", "#b7791f", "#67707b")
+_COLOURS = ("#bf3e0a", "#0b7285", "#5f3dc4", "#1f8a4c", "#b7791f", "#67707b")
 _INK, _QUIET, _LINE = "#1c2025", "#67707b", "#e4e0d8"
 _STYLE: Any = {
     "font.size": 9.5,
