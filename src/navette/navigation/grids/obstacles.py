@@ -91,6 +91,7 @@ class ObstacleTracker:
     def configure(self, footprint: Footprint, hand_m: float) -> None:
         """Replace the outline and the width."""
         self._start = StartArea.of(footprint, Pose2(0.0, 0.0, 0.0), hand_m)
+        self._body_m = footprint.circumscribed_radius
 
     def reset(self) -> None:
         """Forget all costmaps and the map."""
@@ -193,7 +194,8 @@ class ObstacleTracker:
             radius = point_radius(spec.resolution)
         if self._map is not None:
             known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
-            known = _unless_seen(known, cells, here.spec)
+            beside = around.x, around.y, self._body_m
+            known = _unless_seen(known, cells, here.spec, lethal_cost, beside)
             if hits is None:
                 radius = max(radius, self._map[1].resolution / 2)
             else:
@@ -298,15 +300,26 @@ def _stamp_ns(msg: OccupancyGrid) -> int:
 
 
 def _unless_seen(
-    points: NDArray[np.float64], cells: NDArray[np.int8], spec: GridSpec
+    points: NDArray[np.float64],
+    cells: NDArray[np.int8],
+    spec: GridSpec,
+    lethal_cost: int,
+    body: tuple[float, float, float],
 ) -> NDArray[np.float64]:
-    """Return the points (N, 2), map, that are not in known cells of a costmap."""
-    kept: NDArray[np.float64] = _drop_seen(points, cells, grid_frame(spec))
+    """Return the points (N, 2), map, that are not in known cells of a costmap.
+
+    In the circle around the ``body`` (x, y, radius), free cells beside obstacle cells
+    do not count: beams along a surface pass through the cells of its end.
+    """
+    frame = grid_frame(spec)
+    kept: NDArray[np.float64] = _drop_seen(points, cells, frame, lethal_cost, *body)
     return kept
 
 
 @kernel
-def _drop_seen(points: Any, cells: Any, frame: Any) -> Any:
+def _drop_seen(
+    points: Any, cells: Any, frame: Any, lethal: int, x: float, y: float, body: float
+) -> Any:
     height, width = cells.shape
     kept = np.empty_like(points)
     count = 0
@@ -315,10 +328,26 @@ def _drop_seen(points: Any, cells: Any, frame: Any) -> Any:
         column = math.floor((frame.cos * dx + frame.sin * dy) / frame.resolution)
         row = math.floor((frame.cos * dy - frame.sin * dx) / frame.resolution)
         inside = 0 <= row < height and 0 <= column < width
-        if not (inside and cells[row, column] != UNKNOWN):
+        known = inside and cells[row, column] != UNKNOWN
+        if known and math.hypot(points[k, 0] - x, points[k, 1] - y) <= body:
+            known = not _is_beside(cells, row, column, lethal)
+        if not known:
             kept[count, 0], kept[count, 1] = points[k, 0], points[k, 1]
             count += 1
     return kept[:count]
+
+
+@kernel(allocates=False)
+def _is_beside(cells: Any, row: int, column: int, lethal: int) -> bool:
+    """Return whether a free cell has an obstacle cell beside it."""
+    if cells[row, column] >= lethal:
+        return False
+    height, width = cells.shape
+    for i in range(max(0, row - 1), min(height, row + 2)):
+        for j in range(max(0, column - 1), min(width, column + 2)):
+            if cells[i, j] >= lethal:
+                return True
+    return False
 
 
 @kernel

@@ -1,5 +1,7 @@
 """Kernels that collect obstacle points, against their steps one by one."""
 
+import math
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -77,12 +79,19 @@ def test_points_in_known_cells_are_left_out(seed: int) -> None:
     cells, spec = some_grid(rng)
     points = rng.uniform(-12, 12, (40, 2))
 
+    body_x, body_y, body_m = *rng.uniform(-6, 6, 2), rng.uniform(0, 6)
+
     def is_seen(x: float, y: float) -> bool:
-        cell = spec.cell_of(x, y)
-        return spec.contains(*cell) and cells[cell] != UNKNOWN
+        row, column = cell = spec.cell_of(x, y)
+        if not spec.contains(*cell) or cells[cell] == UNKNOWN:
+            return False
+        if cells[cell] >= 100 or math.hypot(x - body_x, y - body_y) > body_m:
+            return True
+        around = cells[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
+        return not (around >= 100).any()
 
     plain = [point for point in points.tolist() if not is_seen(*point)]
-    found = _unless_seen(points, cells, spec)
+    found = _unless_seen(points, cells, spec, 100, (body_x, body_y, body_m))
     np.testing.assert_array_equal(found, np.array(plain).reshape(-1, 2))
 
 
