@@ -15,7 +15,7 @@ from pathlib import Path
 import llvmlite.binding as llvm
 from harness import Benchmark, Figure, Run
 
-from navette.files.kernel_archive import archive_path, package_archive
+from navette.files.kernel_archive import package_archive
 from navette.navigation.stack.kernel_build import build_archive
 
 HERE = Path(__file__).parent
@@ -50,7 +50,7 @@ def seconds_to_motion(**variables: str) -> float:
 def first_run() -> Figure:
     archive = package_archive()
     if archive is None or not archive.is_complete():
-        build_archive(archive_path())
+        build_archive()
     with tempfile.TemporaryDirectory() as empty:
         seconds = seconds_to_motion(NUMBA_CACHE_DIR=empty)
     note = "kernels of the wheel, empty cache; one run"

@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 
 class GenericProcessor(NamedTuple):
-    """What the machine code of an archive requires of a processor.
+    """What the machine code of kernels requires of a processor.
 
     Attributes:
         name: LLVM's name of the processor.
@@ -58,7 +58,7 @@ _GENERIC = {
 
 
 def generic_processor() -> GenericProcessor | None:
-    """Return the generic processor whose machine code this host runs, or None."""
+    """Return the generic processor whose machine code this host can run, or None."""
     generic = _GENERIC.get(platform.machine().lower())
     if generic is None:
         return None
@@ -66,6 +66,27 @@ def generic_processor() -> GenericProcessor | None:
         available = llvm.get_host_cpu_features()
         if not all(available.get(each, False) for each in generic.features):
             return None
+    return generic
+
+
+@functools.cache
+def select_processor() -> GenericProcessor | None:
+    """Compile for the generic processor, so that every host gets the same results.
+
+    The width of its vectors decides in which order ``fastmath`` kernels add. With
+    ``NUMBA_CPU_NAME`` or ``NUMBA_CPU_FEATURES`` the user selects another processor.
+
+    Returns:
+        The generic processor; None if another one is compiled for.
+    """
+    config: Any = numba.config
+    generic = generic_processor()
+    if generic is None:
+        return None
+    selected = (generic.name, "")  # those features that the name implies
+    if (config.CPU_NAME, config.CPU_FEATURES) not in ((None, None), selected):
+        return None
+    config.CPU_NAME, config.CPU_FEATURES = selected
     return generic
 
 
@@ -78,7 +99,7 @@ def archive_path(folder: Path = _FOLDER) -> Path:
 class KernelArchive:
     """The kernels of an archive, in memory: forked processes share no file position."""
 
-    def __init__(self, content: bytes, processor: GenericProcessor) -> None:
+    def __init__(self, content: bytes) -> None:
         """Open an archive.
 
         Raises:
@@ -86,7 +107,6 @@ class KernelArchive:
         """
         self._files = zipfile.ZipFile(io.BytesIO(content))
         self._names = frozenset(self._files.namelist())
-        self.processor = processor
 
     def read(self, name: str) -> bytes | None:
         """Return the machine code of a kernel; None if it is absent or damaged."""
@@ -111,20 +131,15 @@ class KernelArchive:
 def package_archive() -> KernelArchive | None:
     """Return the package's archive, if there is one that this process may use.
 
-    With ``NUMBA_CPU_NAME`` the user chose a processor, so that kernels are compiled.
+    It holds machine code for the generic processor only.
     """
     config: Any = numba.config
-    if config.CPU_NAME is not None or config.DISABLE_JIT:
+    if select_processor() is None or config.DISABLE_JIT:
         return None
     try:
-        content = archive_path().read_bytes()
+        return KernelArchive(archive_path().read_bytes())
     except OSError:
         return None
-    processor = generic_processor()
-    if processor is None:
-        return None
-    try:
-        return KernelArchive(content, processor)
     except zipfile.BadZipFile as error:
         _log.debug("%s: %r; compiling", archive_path(), error)
         return None

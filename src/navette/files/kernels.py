@@ -28,7 +28,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 
 from navette.files.folders import cache_folder, is_private
-from navette.files.kernel_archive import package_archive
+from navette.files.kernel_archive import package_archive, select_processor
 
 VARIABLE = "NUMBA_CACHE_DIR"
 _SUFFIX = ".kernel"
@@ -37,6 +37,8 @@ _DIGEST_BYTES = 32
 _HASH_SYMBOLS = b"_numba_hashsecret"  # of sets and dicts; defined by a refresh
 _UNUSED_S = 30 * 86_400  # after which a file is deleted
 _log = logging.getLogger(__name__)
+
+select_processor()  # before Numba compiles or loads
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -110,8 +112,9 @@ class KernelCache(NullCache):
         # with. Machine code requires only the symbols of the runtime.
         initialize: Any = rtsys.initialize
         initialize(target_context)
-        for read in (self._read_packaged, self._read_stored):
-            data = read(sig, target_context)
+        name = self._file_name(sig, _processor(target_context.codegen()))
+        for read in (_read_packaged, _read_stored):
+            data = read(name)
             if data is None:
                 continue
             if _HASH_SYMBOLS in data:
@@ -123,26 +126,11 @@ class KernelCache(NullCache):
                 _log.debug("%s: %r; compiling", self._function.__name__, error)
         return None
 
-    def _read_packaged(self, sig: Any, target_context: Any) -> bytes | None:
-        archive = package_archive()
-        if archive is None:
-            return None
-        triple = target_context.codegen().magic_tuple()[0]
-        processor = (triple, archive.processor.name, "")
-        return archive.read(self._file_name(sig, processor))
-
-    def _read_stored(self, sig: Any, target_context: Any) -> bytes | None:
-        folder = _folder()
-        if folder is None:
-            return None
-        processor = target_context.codegen().magic_tuple()
-        return read_kernel(folder / self._file_name(sig, processor))
-
     def save_overload(self, sig: Any, data: Any) -> None:
         folder = _folder()
         if folder is None or data.library.has_dynamic_globals:
             return
-        path = folder / self._file_name(sig, data.codegen.magic_tuple())
+        path = folder / self._file_name(sig, _processor(data.codegen))
         try:
             dumps: Any = serialize.dumps
             _write(path, dumps(data._reduce()))
@@ -168,6 +156,22 @@ class KernelCache(NullCache):
 @functools.cache
 def _folder() -> Path | None:
     return cache_folder("kernels", preferred=os.environ.get(VARIABLE))
+
+
+@functools.cache
+def _processor(codegen: Any) -> tuple[str, ...]:
+    """Return triple, name and features: those of the start, which Numba may reset."""
+    return tuple(codegen.magic_tuple())
+
+
+def _read_packaged(name: str) -> bytes | None:
+    archive = package_archive()
+    return None if archive is None else archive.read(name)
+
+
+def _read_stored(name: str) -> bytes | None:
+    folder = _folder()
+    return None if folder is None else read_kernel(folder / name)
 
 
 @functools.cache

@@ -1,12 +1,13 @@
 """Kernels in the package: used as they are, and compiled if anything differs."""
 
 import importlib
+import os
 import pickle
+import subprocess
 import sys
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -38,6 +39,7 @@ class Package:
         sys.modules.pop("scaling", None)
         importlib.invalidate_caches()
         kernels._folder.cache_clear()
+        kernel_archive.select_processor.cache_clear()
         kernel_archive.package_archive.cache_clear()
         before = self.stored()
         scaled = importlib.import_module("scaling").scaled  # noqa: TID251 - of the test
@@ -50,18 +52,9 @@ class Package:
     def stored(self) -> list[Path]:
         return list(self.cache.rglob("*.kernel"))
 
-    def ship(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def ship(self) -> None:
         """Compile, move the machine code from the cache into the archive."""
-
-        def packaged(self: Any, sig: Any, processor: tuple[str, ...]) -> str:
-            generic = kernel_archive.generic_processor()
-            assert generic is not None
-            return str(file_name(self, sig, (processor[0], generic.name, "")))
-
-        file_name = kernels.KernelCache._file_name
-        with monkeypatch.context() as patch:
-            patch.setattr(kernels.KernelCache, "_file_name", packaged)
-            assert self.run() == (RESULT, "compiled")
+        assert self.run() == (RESULT, "compiled")
         files = self.stored()
         code = {each.name: kernels.read_kernel(each) or b"" for each in files}
         write_archive(archive_path(self.compiled), code)
@@ -77,10 +70,28 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Package
     monkeypatch.syspath_prepend(tmp_path)
     path = archive_path(package.compiled)
     monkeypatch.setattr(kernel_archive, "archive_path", lambda: path)
-    package.ship(monkeypatch)
+    package.ship()
     yield package
     kernels._folder.cache_clear()
+    kernel_archive.select_processor.cache_clear()
     kernel_archive.package_archive.cache_clear()
+
+
+@pytest.mark.parametrize("chosen", [None, "generic"])
+def test_every_host_compiles_for_the_generic_processor(chosen: str | None) -> None:
+    code = (
+        "import navette.files.kernels\n"
+        "from numba.core.registry import cpu_target\n"
+        "print(cpu_target.target_context.codegen().magic_tuple()[1])\n"
+    )
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
+    if chosen is not None:
+        environment["NUMBA_CPU_NAME"] = chosen
+    command = [sys.executable, "-c", code]
+    output = subprocess.check_output(command, env=environment, text=True)
+    generic = kernel_archive.generic_processor()
+    assert generic is not None
+    assert output.strip() == (chosen or generic.name)
 
 
 def test_kernels_of_the_package_are_not_compiled(package: Package) -> None:

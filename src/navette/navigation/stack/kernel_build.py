@@ -24,22 +24,24 @@ _MOST_S = 900.0  # a minute on an idle machine
 _PART_MODULE = "navette.navigation.stack.kernel_part"
 
 
-def build_archive(path: Path) -> int:
-    """Compile the kernels, each part in a process; return their number.
+def build_archive() -> int:
+    """Write the package's archive, each part compiled in a process of its own.
+
+    Returns:
+        The number of kernels.
 
     Raises:
         OSError: this host does not run the machine code of its generic processor.
         subprocess.SubprocessError: the kernels did not compile, or took too long.
     """
-    processor = generic_processor()
-    if processor is None:
+    if generic_processor() is None:
         raise OSError("this processor is older than the generic one of its kind")
+    path = archive_path()
+    path.unlink(missing_ok=True)  # kernels that are loaded from it are not stored
     with tempfile.TemporaryDirectory() as cache:
         environment = {
             **os.environ,
             "NUMBA_CACHE_DIR": cache,
-            "NUMBA_CPU_NAME": processor.name,
-            "NUMBA_CPU_FEATURES": "",  # those of the processor's name
             "NUMBA_DISABLE_INTEL_SVML": "1",  # not every host has it
         }
         commands = [[sys.executable, "-m", _PART_MODULE, part] for part in PARTS]
@@ -62,8 +64,8 @@ def build_archive(path: Path) -> int:
 
 def main() -> None:
     """Write the archive, and print its size."""
+    count = build_archive()
     path = archive_path()
-    count = build_archive(path)
     size_mb = path.stat().st_size / 1e6
     sys.stdout.write(f"{path}: {count} kernels, {size_mb:.1f} MB\n")
 
