@@ -21,6 +21,9 @@ _CORRELATION_S = 0.5  # of the acceleration
 _RADIUS_GAIN = 0.1
 # Time at low speed after which a track no longer counts as moving.
 _STOPPED_S = 1.0
+# Time in which a moving obstacle goes as far as the least speed takes it. The measured
+# centre of a wall of which more and less is seen has a speed, and stays.
+_TRAVEL_S = 2.0
 
 
 class TrackedObstacle(NamedTuple):
@@ -53,6 +56,7 @@ class Track:
     stamp_ns: int
     seen_ns: int
     origin: tuple[float, float]
+    origin_ns: int
     vx: float = 0.0
     vy: float = 0.0
     pv: float = 0.0
@@ -82,6 +86,7 @@ class Track:
             is_round=cluster.is_round,
             wholes=int(cluster.is_whole),
             origin=(cluster.x, cluster.y),
+            origin_ns=stamp_ns,
         )
 
     @property
@@ -150,16 +155,29 @@ class Track:
         slow = self.speed_mps < params.min_speed_mps
         if not slow:
             self.slow_ns = self.stamp_ns
-        if self.is_moving:
-            self.is_moving = self.stamp_ns - self.slow_ns < _STOPPED_S * 1e9
+        travel_m = math.hypot(self.x - self.origin[0], self.y - self.origin[1])
+        if not self.is_moving:
+            self.is_moving = (
+                not slow
+                and self.hits >= _LEAST_HITS
+                and self.changes >= _LEAST_CHANGES
+                and travel_m >= _LEAST_TRAVEL_M
+            )
+            if self.is_moving:
+                self._start_here()
             return
-        travel = math.hypot(self.x - self.origin[0], self.y - self.origin[1])
-        self.is_moving = (
-            not slow
-            and self.hits >= _LEAST_HITS
-            and self.changes >= _LEAST_CHANGES
-            and travel >= _LEAST_TRAVEL_M
-        )
+        if travel_m >= params.min_speed_mps * _TRAVEL_S:
+            self._start_here()
+        if (
+            self.stamp_ns - self.slow_ns >= _STOPPED_S * 1e9
+            or self.stamp_ns - self.origin_ns >= _TRAVEL_S * 1e9
+        ):
+            self.is_moving, self.hits, self.changes = False, 0, 0
+            self._start_here()
+
+    def _start_here(self) -> None:
+        """Measure the travel from here."""
+        self.origin, self.origin_ns = (self.x, self.y), self.stamp_ns
 
     def is_over(self, params: TrackingParams) -> bool:
         """Return whether the track has ended."""

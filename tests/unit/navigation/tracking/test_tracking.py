@@ -181,6 +181,24 @@ def test_an_obstacle_that_stops_is_no_longer_moving_and_one_that_leaves_is_gone(
     assert not found[-1]
 
 
+def test_a_centre_that_moves_to_and_fro_stands() -> None:
+    # That of a wall of which a robot that turns sees more, then less.
+    params, sensor = TrackingParams(), (0.0, 0.0)
+    centres = [3.0 + 0.1 * i for i in range(6)]
+    centres += [3.5 + 0.1 * math.sin(2 * math.pi * i / 10) for i in range(60)]
+    track, moving = None, []
+    for i, x in enumerate(centres):
+        cluster = Cluster(x, 2.0, 0.5, True, False, 5 if i < 6 else 0)
+        if track is None:
+            track = Track.begin(1, cluster, 0, params)
+            continue
+        track.predict(i * 100_000_000, params.acceleration_mps2)
+        track.update(cluster, sensor, params)
+        moving.append(track.is_moving)
+    assert any(moving[:6])
+    assert not any(moving[25:])
+
+
 def test_a_jump_back_in_time_forgets_everything() -> None:
     obstacles = MovingObstacles(TrackingParams())
     near = PlanarScan(np.full(90, 2.0, np.float32), -0.5, 0.011, 0.1, 10.0)
