@@ -55,7 +55,10 @@ class RobotIndex:
 
 @dataclass(frozen=True)
 class Compiled:
-    """A compiled scene. ``geom_owner``: "model/link" of each geom, by index."""
+    """A compiled scene.
+
+    ``geom_owner``: "model/link" of each geom, by index; "model" if it has one link.
+    """
 
     model: mujoco.MjModel
     scene: Scene

@@ -61,7 +61,7 @@ def describe_world(compiled: Compiled, map_frame: str) -> str:
             px, py, pz = model.geom_pos[index].tolist()
             r, g, b, a = model.geom_rgba[index].tolist()
             pose = Transform3((px, py, pz), (x, y, z, w))
-            name = compiled.geom_owner[index].removesuffix("/link")
+            name = compiled.geom_owner[index]
             _add_visual(link, shape, pose, (r, g, b, a), name)
     return _text(root)
 

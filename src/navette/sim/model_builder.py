@@ -114,7 +114,8 @@ class ModelBuilder:
 
     def _name(self, model: Model, link: Link, geometry: Geometry) -> str:
         name = f"{model.name}/{link.name}/{geometry.name}#{len(self.owner)}"
-        self.owner[name] = f"{model.name}/{link.name}"
+        only = len(model.links) == 1
+        self.owner[name] = model.name if only else f"{model.name}/{link.name}"
         if geometry.surface is not None:
             self.surfaces[name] = geometry.surface
         return name

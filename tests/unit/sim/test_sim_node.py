@@ -276,6 +276,7 @@ def test_contacts_are_reported() -> None:
     assert "robot/chassis touched box" in reported.message
     facts = {pair.key: pair.value for pair in reported.values}
     assert set(facts) >= {"part", "obstacle", "time_s", "frame"}
+    assert facts["obstacle"] == "box_1"
     # The box begins 2.5 m ahead.
     assert float(facts["x_m"]) == pytest.approx(2.5, abs=0.02)
     assert abs(float(facts["y_m"])) < 0.55  # a corner of the chassis
