@@ -39,6 +39,9 @@ _STEP_S = 0.1
 # obstacles, and to the robot's distance to stop to leave them in.
 _RETURNS_M = 0.2
 _NEAR_M = 0.05
+# Obstacles slower than this are avoided where they are: the estimated velocity of a
+# wall of which more and less is seen swings around zero.
+_SLOW_MPS = 0.15
 
 
 def counts_as_static(
@@ -51,6 +54,7 @@ def counts_as_static(
     requires to stop also those of receding ones: a surface of which more and more is
     seen looks as if it moved.
     """
+    discs = discs[np.hypot(discs[:, 2], discs[:, 3]) >= _SLOW_MPS]
     speed = abs(speed_mps)
     stop_m = speed * (params.reaction_s + speed / (2 * params.deceleration_mps2))
     body_m = Footprint.from_flat(params.footprint_m).circumscribed_radius

@@ -292,7 +292,7 @@ class MovingObstacles:
             if i in matched:
                 track.update(clusters[matched[i]], (placed.x, placed.y), params)
             else:
-                track.misses += 1
+                track.miss(params)
         taken = set(matched.values())
         for j, cluster in enumerate(clusters):
             if j not in taken and cluster.changed:

@@ -129,6 +129,11 @@ class Track:
         self.seen_ns = self.stamp_ns
         self._judge(params)
 
+    def miss(self, params: TrackingParams) -> None:
+        """Note that a scan shows nothing that belongs to the track."""
+        self.misses += 1
+        self._judge(params)
+
     def _resize(self, cluster: Cluster, sensor: tuple[float, float]) -> None:
         """Correct the radius; the near side, which was measured, stays.
 

@@ -130,3 +130,5 @@ def test_what_the_robot_reaches_before_it_stops_counts_where_it_is(
     assert np.flatnonzero(kept).tolist() == [0, 3], (
         "it comes closer: prediction avoids it"
     )
+    discs[0, 2] = -0.1
+    assert counts_as_static(points, discs, Pose2(0, 0, 0), speed_mps, params).all()

@@ -199,6 +199,21 @@ def test_a_centre_that_moves_to_and_fro_stands() -> None:
     assert not any(moving[25:])
 
 
+def test_a_slow_track_without_measurements_stops_counting() -> None:
+    params = TrackingParams()
+    track = Track.begin(1, Cluster(3.0, 0.0, 0.3, True, False, 5), 0, params)
+    for i in range(1, 5):
+        track.predict(i * 100_000_000, params.acceleration_mps2)
+        x = 3.0 + 0.05 * i
+        track.update(Cluster(x, 0.0, 0.3, True, False, 5), (0.0, 0.0), params)
+    assert track.is_moving
+    track.vx = 0.05
+    for i in range(5, 16):
+        track.predict(i * 100_000_000, params.acceleration_mps2)
+        track.miss(params)
+    assert not track.is_moving
+
+
 def test_a_jump_back_in_time_forgets_everything() -> None:
     obstacles = MovingObstacles(TrackingParams())
     near = PlanarScan(np.full(90, 2.0, np.float32), -0.5, 0.011, 0.1, 10.0)
