@@ -181,7 +181,7 @@ def test_an_obstacle_that_stops_is_no_longer_moving_and_one_that_leaves_is_gone(
     assert not found[-1]
 
 
-def test_a_centre_that_moves_to_and_fro_stands() -> None:
+def test_a_centre_that_moves_back_and_forth_stands() -> None:
     # That of a wall of which a robot that turns sees more, then less.
     params, sensor = TrackingParams(), (0.0, 0.0)
     centres = [3.0 + 0.1 * i for i in range(6)]
