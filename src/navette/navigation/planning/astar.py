@@ -187,10 +187,20 @@ def _expand_while_room(
             continue
         records[index] = record | _CLOSED
         g = _G_MASK - ((record >> 4) & _G_MASK)
-        least = _expand(grid, query, queue, pool, bucket, row, column, g, best)
+        behind = _behind(record & 7) if g > 0 else 0  # the start: none
+        least = _expand(grid, query, queue, pool, bucket, row, column, g, behind, best)
         found |= least < best
         best = least
     return bucket, best, found, True
+
+
+@kernel(allocates=False, forceinline=True)
+def _behind(move: int) -> int:
+    """Return the neighbours behind a cell that ``move`` reached: a bit for each move.
+
+    The cell before reaches them directly, and for less, whatever the cells cost.
+    """
+    return (0xC2, 0x31, 0xA8, 0x54, 0x8A, 0x46, 0x29, 0x15)[move]
 
 
 @kernel(allocates=False, forceinline=True)
@@ -203,9 +213,10 @@ def _expand(
     row: int,
     column: int,
     g: int,
+    behind: int,
     best: int,
 ) -> int:
-    """Offer g + edge to the eight neighbours; return the goal's least g so far.
+    """Offer g + edge to the neighbours that are not ``behind``; return the goal's g.
 
     Where the heuristic falls by more than a step costs, the bound of the cell that is
     expanded also holds for its neighbours (pathmax, Mérő 1984).
@@ -223,6 +234,8 @@ def _expand(
         straight[cost[np.uint64(index + 1)]],
     )
     for k in range(8):
+        if behind >> k & 1:
+            continue
         reached = np.uint64(index + steps[k])
         if k < 4:
             edge = orthogonal[k]

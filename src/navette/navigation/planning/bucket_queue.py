@@ -41,9 +41,9 @@ class BucketQueue(NamedTuple):
     def spanning(cls, span: int) -> "BucketQueue":
         """Return an empty queue for priorities that span up to ``span``.
 
-        2¹⁰ units are a tenth of a straight step: measured best of 2¹⁰ … 2¹⁴.
+        2⁹ units are a twentieth of a straight step: measured best of 2⁸ … 2¹².
         """
-        shift = 10
+        shift = 9
         while (span >> shift) + 3 > _MAX_BUCKETS:
             shift += 1
         return cls.empty(1 << int((span >> shift) + 2).bit_length(), shift)
