@@ -184,11 +184,25 @@ def _free_between(
         last = min(reach, _exit(u, du, width), _exit(v, dv, height))
         # Nearer than this the beams themselves are less than a cell apart.
         steps = int((last - 1.0 / (apart * per_metre)) * per_metre) + 1
-        for step in range(steps):
-            at = last - step * frame.resolution
-            row, column = int(v + at * dv), int(u + at * du)
-            if 0 <= row < height and 0 <= column < width:
-                flat[np.uintp(row * width + column)] = FREE
+        nearest = last - (steps - 1) * frame.resolution
+        row, column = _fixed(v + last * dv, height), _fixed(u + last * du, width)
+        between = max(steps - 1, 1)
+        down = int((_fixed(v + nearest * dv, height) - row) / between)
+        right = int((_fixed(u + nearest * du, width) - column) / between)
+        for _ in range(steps):
+            flat[np.uintp((row >> 32) * width + (column >> 32))] = FREE
+            row += down
+            column += right
+
+
+@kernel(allocates=False)
+def _fixed(cells: float, size: int) -> int:
+    """Return a coordinate in 1/2³² cells, inside [0, size) by more than steps round.
+
+    Stepping integers needs no conversion and no test for each cell.
+    """
+    least = 1 << 16
+    return min(max(int(cells * 4294967296.0), least), (size << 32) - least)
 
 
 @kernel(allocates=False)
