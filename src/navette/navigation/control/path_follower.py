@@ -186,6 +186,7 @@ class PathFollower(BaseFollower):
 
         Steering cuts corners by a few centimetres, which a path in a tight place does
         not leave. The robot would stand there, and each new path would be the same.
+        The last arc is straight: beside a wall it stays free when no bend is.
         """
         params, gain = self._params, self._parts.turn_gain.value
         if not wanted.speed:
@@ -194,9 +195,9 @@ class PathFollower(BaseFollower):
             params.cruise_speed_mps if wanted.speed > 0 else -params.reverse_speed_mps
         )
         steered = wanted.turn_rate / wanted.speed
-        for change in _OTHER_CURVATURES:
-            arc = slow, slow * (steered + change)
-            other = clamp(VelocityCommand(*arc), params)
+        curvatures = [steered + change for change in _OTHER_CURVATURES]
+        for curvature in (*curvatures, 0.0):
+            other = clamp(VelocityCommand(slow, slow * curvature), params)
             motion = other.speed, other.turn_rate * gain
             if self._parts.collision.check(pose, motion).scale == 1.0:
                 return other

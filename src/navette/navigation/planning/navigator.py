@@ -262,7 +262,8 @@ class Navigator:
     ) -> None:
         assert self._goal is not None, "a path implies a goal"
         progress.update(robot.pose)
-        self._checker.note(progress.covered, now_ns)
+        here = robot.pose.x, robot.pose.y
+        self._checker.note(progress.covered, here, now_ns)
         if progress.covered >= _SET_OUT_M:
             self._set_out, self._blocked_plans = True, 0
         changed, self._map_changed = self._map_changed, False

@@ -1,11 +1,16 @@
 """Timeouts of one goal: progress, attempts, rest at the goal."""
 
+import math
+
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.reports import RobotMotion
 
 # Rest near the goal that counts as arrived; a pause between two pieces of a path is
 # shorter.
 _REST_NS = 1_000_000_000
+# A robot that comes no farther (m) than this between its attempts is still stuck, even
+# if it drives to and from the place along one new path after another.
+_SAME_PLACE_M = 0.5
 
 
 class ProgressChecker:
@@ -27,7 +32,8 @@ class ProgressChecker:
         self._since_ns = self._goal_since_ns = now_ns
         self._resting_since_ns: int | None = None
         self._mark_m = 0.0
-        #: Attempts used up since the last progress.
+        self._place = (math.inf, math.inf)
+        #: Attempts used up since the robot left the place of the first of them.
         self.spent = 0
 
     def skip(self, span_ns: int) -> None:
@@ -40,10 +46,14 @@ class ProgressChecker:
         """Count progress from ``covered_m`` of a new path; the timers continue."""
         self._mark_m = covered_m
 
-    def note(self, covered_m: float, now_ns: int) -> None:
-        """Update the distance covered along the path (m)."""
+    def note(self, covered_m: float, here: tuple[float, float], now_ns: int) -> None:
+        """Update the distance covered along the path (m) and the position (m, map)."""
+        if self.spent == 0:
+            self._place = here
         if covered_m >= self._mark_m + self._step_m:
-            self._mark_m, self._since_ns, self.spent = covered_m, now_ns, 0
+            self._mark_m, self._since_ns = covered_m, now_ns
+            if math.dist(here, self._place) > _SAME_PLACE_M:
+                self.spent = 0
 
     def no_progress(self, now_ns: int) -> bool:
         """Return whether the progress timeout expired; if so, count it and restart."""

@@ -60,3 +60,15 @@ def test_a_robot_before_a_wall_stays_blocked() -> None:
     result = run(follower, plant, 4.0)
     assert result.final.state == "blocked"
     assert plant.pose.distance_to(START) < 0.05
+
+
+def test_between_walls_a_robot_beside_its_path_drives_straight_on() -> None:
+    along = np.arange(-1.0, 4.0, 0.0125)
+    walls = [(x, y) for y in (-0.361, 0.361) for x in along]
+    follower = PathFollower(PARAMS)
+    follower.set_obstacles(np.array(walls), 0.00625)
+    follower.set_path(np.array([(x, 0.3, 0.0) for x in np.arange(-0.2, 3.0, 0.05)]))
+    plant = Plant(Pose2(0.0, 0.0, 0.0), lag_s=0.05, turning=1.0)
+    result = run(follower, plant, 10.0)
+    assert plant.pose.x > 1.0
+    assert min(output.clearance_m for output in result.outputs) > 0.01
