@@ -35,7 +35,8 @@ def test_values_are_those_of_yaml() -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("[" * 60_000, "nested deeper than 64"),
+        # libyaml 0.2.6 and newer refuses this itself while it looks for a key
+        ("[" * 60_000, "nest"),
         ("- " * 60_000, "nested deeper than 64"),
         ("? " * 60_000, "nested deeper than 64"),
         ("{a: " * 60_000, "nested deeper than 64"),
