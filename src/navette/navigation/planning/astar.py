@@ -33,6 +33,7 @@ from navette.navigation.planning.traversal import (
     EdgeTable,
     SearchGrid,
     require_inside,
+    rim_of,
 )
 
 # A record per cell: stamp << 48 | (most − g) << 4 | closed << 3 | direction. The stamp
@@ -85,7 +86,8 @@ class AStar:
         require_inside(goal, cost.shape, "goal")
         table = table or EdgeTable()
         grid = SearchGrid.of(cost, table, self._rimmed)
-        self._rimmed = grid.cost.reshape(-1, grid.stride)
+        if rim_of(cost) is None:
+            self._rimmed = grid.cost.reshape(-1, grid.stride)
         if not (grid.is_open(start) and grid.is_open(goal)):
             return None
         if start == goal:

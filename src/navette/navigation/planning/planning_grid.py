@@ -32,6 +32,8 @@ from navette.navigation.planning.traversal import (
     STRAIGHT,
     Cell,
     EdgeTable,
+    copy_costs,
+    rimmed_costs,
 )
 
 # Largest ratio of an 8-connected path's length to the straight line's.
@@ -91,7 +93,8 @@ class PlanningGrid:
         spec: geometry of the grid in the map frame.
         obstacles: (H, W) uint8, 1 = lethal.
         distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
-        cost: (H, W) uint8 for ``table``; 255 where the base cannot be.
+        cost: (H, W) uint8 for ``table``; 255 where the base cannot be. It has a rim
+            (:func:`.traversal.rimmed_costs`).
         costs: how the cells became costs.
         margin_m: clearance that the body keeps.
         hits: (N, 2) map frame, m: where beams ended; empty = not known.
@@ -113,7 +116,7 @@ class PlanningGrid:
             self,
             obstacles=self.obstacles.copy(),
             distance_m=self.distance_m.copy(),
-            cost=self.cost.copy(),
+            cost=copy_costs(self.cost),
             cheap=None if self.cheap is None else self.cheap.copy(),
         )
 
@@ -204,7 +207,7 @@ def planning_grid(
     obstacles = sparse_zeros(spec.shape, np.uint8)
     obstacles[known.slices] = occupancy[known.slices] >= params.lethal_cost
     distance_m = np.full(spec.shape, costs.reach_m, np.float32)
-    cost = np.full(spec.shape, costs.far_unknown, np.uint8)
+    cost = rimmed_costs(spec.shape, int(costs.far_unknown))
     if not known.is_empty:
         near = costs.measure(obstacles, distance_m, spec.resolution, known)
         costs.fill(occupancy, distance_m, cost, near)
@@ -293,7 +296,7 @@ def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
     rows = slice(max(0, start[0] - reach), start[0] + reach + 1)
     columns = slice(max(0, start[1] - reach), start[1] + reach + 1)
     least = grid.distance_m[start] - 0.5 * grid.spec.resolution
-    cost = grid.cost.copy()
+    cost = copy_costs(grid.cost)
     window, distance = cost[rows, columns], grid.distance_m[rows, columns]
     window[(window == LETHAL) & (distance >= least) & (distance > 0)] = (
         MAX_PASSABLE_COST

@@ -99,7 +99,10 @@ class SearchGrid(NamedTuple):
         table: EdgeTable,
         rimmed: NDArray[np.uint8] | None = None,
     ) -> "SearchGrid":
-        """Return the grid of costs (H, W); ``rimmed`` (H + 2, W + 2) is overwritten."""
+        """Return the grid of costs (H, W).
+
+        ``rimmed`` (H + 2, W + 2) is overwritten, unless ``cost`` has a rim already.
+        """
         rimmed = with_rim(cost, rimmed)
         return cls(rimmed.reshape(-1), rimmed.shape[1], table.straight, table.diagonal)
 
@@ -111,14 +114,53 @@ class SearchGrid(NamedTuple):
         return bool(self.straight[self.cost[self.index_of(cell)]])
 
 
+def rimmed_costs(shape: tuple[int, ...], value: int) -> NDArray[np.uint8]:
+    """Return (H, W) cells of one cost, with a lethal rim around them in memory.
+
+    A search reads them without the copy that costs as much as a short search.
+    """
+    height, width = shape
+    rimmed = np.full((height + 2, width + 2), value, np.uint8)
+    return _inside_rim(rimmed)
+
+
+def copy_costs(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a copy of costs (H, W) with a lethal rim around them in memory."""
+    rimmed = np.empty((cost.shape[0] + 2, cost.shape[1] + 2), np.uint8)
+    rimmed[1:-1, 1:-1] = cost
+    return _inside_rim(rimmed)
+
+
+def _inside_rim(rimmed: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    rimmed[0] = rimmed[-1] = rimmed[:, 0] = rimmed[:, -1] = LETHAL
+    return rimmed[1:-1, 1:-1]
+
+
+def rim_of(cost: NDArray[np.uint8]) -> NDArray[np.uint8] | None:
+    """Return the array (H + 2, W + 2) with a lethal rim that ``cost`` is a part of.
+
+    None: there is no such array.
+    """
+    whole = cost.base
+    if not isinstance(whole, np.ndarray) or not whole.flags.c_contiguous:
+        return None
+    if whole.dtype != np.uint8 or whole.ndim != 2 or min(whole.shape) < 2:
+        return None
+    inside = whole[1:-1, 1:-1]
+    rim = (whole[0], whole[-1], whole[:, 0], whole[:, -1])
+    if inside.__array_interface__ != cost.__array_interface__:
+        return None
+    return whole if all((side == LETHAL).all() for side in rim) else None
+
+
 def with_rim(
     cost: NDArray[np.uint8], rimmed: NDArray[np.uint8] | None = None
 ) -> NDArray[np.uint8]:
     """Return cost (H, W) as (H + 2, W + 2) with a lethal rim: no bounds checks needed.
 
     Args:
-        cost: costs of the cells.
-        rimmed: the array to use, if it has that shape.
+        cost: costs of the cells; if they have a rim (:func:`rim_of`), it is returned.
+        rimmed: the array to use otherwise, if it has that shape.
 
     Raises:
         InvalidValueError: not 2-D uint8, or more than 32000 cells a side.
@@ -132,10 +174,12 @@ def with_rim(
         raise InvalidValueError(
             f"cost grid of {height} x {width} cells: must be at most 32000 a side"
         )
+    present = rim_of(cost)
+    if present is not None:
+        return present
     if rimmed is None or rimmed.shape != (height + 2, width + 2):
         rimmed = np.empty((height + 2, width + 2), np.uint8)
-    rimmed[0] = rimmed[-1] = rimmed[:, 0] = rimmed[:, -1] = LETHAL
-    rimmed[1:-1, 1:-1] = cost
+    _inside_rim(rimmed)[:] = cost
     return rimmed
 
 
