@@ -17,7 +17,13 @@ from navette.navigation.grids.collision_check import (
     MovingBody,
 )
 from navette.navigation.grids.compare import Changes, compare
-from navette.navigation.grids.distance import distance_field
+from navette.navigation.grids.distance import (
+    DistanceLevels,
+    distance_field,
+    distance_levels,
+    level_metres,
+    level_type,
+)
 from navette.navigation.grids.evidence import accumulate
 from navette.navigation.grids.exact_clearance import (
     ObstacleGrid,
@@ -103,6 +109,10 @@ __all__ = [
     "FREE",
     "LETHAL",
     "distance_field",
+    "distance_levels",
+    "level_metres",
+    "level_type",
+    "DistanceLevels",
     "DistanceGrid",
     "Body",
     "make_body",

@@ -10,6 +10,7 @@ from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
 from navette.geometry import Footprint
 from navette.navigation.grids.checks import grid_array, kernel_array
+from navette.navigation.grids.distance import DistanceLevels, level_type
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
 
 # Of a cell, in cells: an obstacle may fill its cell to the corners.
@@ -20,12 +21,12 @@ class DistanceGrid(NamedTuple):
     """A distance field for kernels.
 
     Attributes:
-        distance_m: (H, W) float32 from :func:`navette.navigation.grids.distance_field`.
+        distances: to the obstacles.
         frame: :func:`~navette.navigation.grids.spec.grid_frame` of its spec.
         outside_m: distance of points outside the grid.
     """
 
-    distance_m: NDArray[np.float32]
+    distances: DistanceLevels
     frame: GridFrame
     outside_m: float
 
@@ -77,7 +78,7 @@ def body_points(footprint: Footprint, spacing_m: float) -> NDArray[np.float64]:
 
 
 def body_clearance(
-    distance_m: NDArray[np.float32],
+    distances: DistanceLevels,
     spec: GridSpec,
     body: NDArray[np.float64],
     poses: NDArray[np.float64],
@@ -91,7 +92,7 @@ def body_clearance(
     cells), less half a cell's diagonal: an obstacle may fill its cell.
 
     Args:
-        distance_m: (H, W) float32 from :func:`navette.navigation.grids.distance_field`.
+        distances: (H, W) to the obstacles.
         spec: geometry of that grid.
         body: (K, 2) x, y or (K, 3) x, y, disc radius in the base frame, metres;
             see :func:`body_points`.
@@ -106,7 +107,7 @@ def body_clearance(
     Raises:
         InvalidValueError: an array of a wrong type or shape.
     """
-    field = grid_array("distance_m", distance_m, np.float32, spec)
+    level = grid_array("level", distances.level, level_type(distances.metres), spec)
     points = kernel_array("body", body, np.float64)
     if points.shape[0] < 1 or points.shape[1] not in (2, 3):
         raise InvalidValueError(
@@ -116,6 +117,7 @@ def body_clearance(
     if at.shape[1] != 3:
         raise InvalidValueError(f"poses: shape {at.shape}, expected (N, 3)")
     clearance = np.empty(len(at))
+    field = DistanceLevels(level, distances.metres)
     grid = DistanceGrid(field, grid_frame(spec), float(outside_m))
     _clearances(grid, make_body(points), at, float(enough_m), clearance)
     return clearance
@@ -129,7 +131,7 @@ def distance_at(grid: DistanceGrid, x: float, y: float) -> float:
     ``grid.outside_m``.
     """
     u, v, _, _ = _to_cells(grid.frame, x, y, 0.0)
-    metres: float = _interpolate(grid.distance_m, u, v, grid.outside_m)
+    metres: float = _interpolate(grid.distances, u, v, grid.outside_m)
     return metres
 
 
@@ -138,11 +140,11 @@ def pose_clearance(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, enough_m: float
 ) -> float:
     """:func:`body_clearance` at one pose, for other kernels."""
-    distance_m, outside_m = grid.distance_m, grid.outside_m
+    distances, outside_m = grid.distances, grid.outside_m
     margin: float = HALF_DIAGONAL * grid.frame.resolution
     u, v, cos, sin = _to_cells(grid.frame, x, y, yaw)
     if enough_m < np.inf:
-        bound: float = _interpolate(distance_m, u, v, outside_m) - body.reach_m - margin
+        bound: float = _interpolate(distances, u, v, outside_m) - body.reach_m - margin
         if bound >= enough_m:
             return bound
     points = body.points
@@ -150,7 +152,7 @@ def pose_clearance(
     for k in range(points.shape[0]):
         bx, by = points[k, 0], points[k, 1]
         pu, pv = u + cos * bx - sin * by, v + sin * bx + cos * by
-        here: float = _interpolate(distance_m, pu, pv, outside_m)
+        here: float = _interpolate(distances, pu, pv, outside_m)
         if points.shape[1] > 2:
             here -= points[k, 2]
         least = min(least, here)
@@ -162,16 +164,16 @@ def pose_is_clear(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
     """Whether :func:`pose_clearance` is at least ``needed_m``; stops early."""
-    distance_m, outside_m = grid.distance_m, grid.outside_m
+    distances, outside_m = grid.distances, grid.outside_m
     needed = needed_m + HALF_DIAGONAL * grid.frame.resolution
     u, v, cos, sin = _to_cells(grid.frame, x, y, yaw)
-    if _interpolate(distance_m, u, v, outside_m) - body.reach_m >= needed:
+    if _interpolate(distances, u, v, outside_m) - body.reach_m >= needed:
         return True
     points = body.points
     for k in range(points.shape[0]):
         bx, by = points[k, 0], points[k, 1]
         pu, pv = u + cos * bx - sin * by, v + sin * bx + cos * by
-        here: float = _interpolate(distance_m, pu, pv, outside_m)
+        here: float = _interpolate(distances, pu, pv, outside_m)
         if points.shape[1] > 2:
             here -= points[k, 2]
         if here < needed:
@@ -194,10 +196,11 @@ def _to_cells(
 
 @kernel(allocates=False)
 def _interpolate(
-    distance_m: NDArray[np.float32], u: float, v: float, outside_m: float
+    distances: DistanceLevels, u: float, v: float, outside_m: float
 ) -> float:
     """Bilinear distance at the point (u columns, v rows) from the grid's corner."""
-    height, width = distance_m.shape
+    level, metres = distances.level, distances.metres
+    height, width = level.shape
     # In this form a point that is not finite counts as outside.
     if not (0.0 <= u < width and 0.0 <= v < height):
         return outside_m
@@ -208,8 +211,8 @@ def _interpolate(
     c1 = np.uint32(min(c + 1, width - 1))
     r1 = np.uint32(min(r + 1, height - 1))
     fu, fv = u - c, v - r
-    low: float = (1.0 - fu) * distance_m[r, c] + fu * distance_m[r, c1]
-    high: float = (1.0 - fu) * distance_m[r1, c] + fu * distance_m[r1, c1]
+    low: float = (1.0 - fu) * metres[level[r, c]] + fu * metres[level[r, c1]]
+    high: float = (1.0 - fu) * metres[level[r1, c]] + fu * metres[level[r1, c1]]
     return (1.0 - fv) * low + fv * high
 
 

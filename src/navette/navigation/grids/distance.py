@@ -22,6 +22,8 @@ BLOCK = 256
 RADIUS_16_BIT = 179
 # Largest radius whose square fits int32.
 MAX_RADIUS = 46_339
+# Largest radius whose levels, a table of its square, are worth their memory.
+MAX_LEVEL_RADIUS = 2_000
 
 Occupied = NDArray[np.uint8]
 
@@ -46,12 +48,72 @@ def distance_field(
     at_least("resolution", resolution, 1e-9)
     at_least("max_distance_m", max_distance_m, 0.0)
     scratch = make_scratch(occupied.shape, math.ceil(max_distance_m / resolution))
-    metres = resolution * np.sqrt(np.arange((scratch.radius + 1) ** 2 + 1))
-    table = np.minimum(metres, max_distance_m).astype(np.float32)
-    table[-1] = max_distance_m  # no obstacle found
+    table = _metres(resolution, scratch.radius, max_distance_m)
     field = np.empty(occupied.shape, np.float32)
     _field_kernel(occupied, scratch, table, field)
     return field
+
+
+class DistanceLevels(NamedTuple):
+    """Distances by level: half the memory of metres, none where all are far.
+
+    Attributes:
+        level: (H, W) uint16 or uint32: 0 = no obstacle within reach, nearer is higher.
+        metres: (n,) float32, distance by level; exact, as of :func:`distance_field`.
+    """
+
+    level: NDArray[Any]
+    metres: NDArray[np.float32]
+
+    def everywhere(self) -> NDArray[np.float32]:
+        """Return (H, W) float32 the distances in metres."""
+        return np.take(self.metres, self.level)
+
+
+def level_metres(resolution: float, max_distance_m: float) -> NDArray[np.float32]:
+    """Return (n,) float32 the distances (m) by level, of all up to a largest one.
+
+    A level is ``n − 1`` less the squared distance in cells.
+    """
+    radius = math.ceil(max_distance_m / resolution)
+    if radius > MAX_LEVEL_RADIUS:
+        raise InvalidValueError(
+            f"max_distance_m: {max_distance_m}, must be at most {MAX_LEVEL_RADIUS} "
+            f"cells of {resolution} m"
+        )
+    return _metres(resolution, radius, max_distance_m)[::-1].copy()
+
+
+def level_type(metres: NDArray[np.float32]) -> Any:
+    """Return the type of levels with these distances."""
+    return np.uint16 if len(metres) <= 1 << 16 else np.uint32
+
+
+def distance_levels(occupied: Occupied, metres: NDArray[np.float32]) -> NDArray[Any]:
+    """Return the levels (H, W) of the distances to the nearest obstacle.
+
+    Args:
+        occupied: (H, W), non-zero = obstacle.
+        metres: of :func:`level_metres`.
+    """
+    occupied = kernel_array("occupied", occupied, np.uint8)
+    last = len(metres) - 1
+    scratch = make_scratch(occupied.shape, math.isqrt(last) - 1)
+    table = (last - np.arange((scratch.radius + 1) ** 2 + 1)).astype(level_type(metres))
+    table[-1] = 0  # no obstacle found
+    level = np.empty(occupied.shape, table.dtype)
+    _field_kernel(occupied, scratch, table, level)
+    return level
+
+
+def _metres(
+    resolution: float, radius: int, max_distance_m: float
+) -> NDArray[np.float32]:
+    """Return the distance by its square in cells, up to (radius + 1)²: none found."""
+    metres = resolution * np.sqrt(np.arange((radius + 1) ** 2 + 1))
+    table = np.minimum(metres, max_distance_m).astype(np.float32)
+    table[-1] = max_distance_m
+    return table
 
 
 class Scratch(NamedTuple):
@@ -185,8 +247,8 @@ def row_squares(scratch: Scratch, r: int) -> NDArray[Any]:
 def _field_kernel(
     occupied: Occupied,
     scratch: Scratch,
-    table: NDArray[np.float32],
-    field: NDArray[np.float32],
+    table: NDArray[Any],
+    field: NDArray[Any],
 ) -> None:
     column_distances(occupied, scratch)
     for r in range(field.shape[0]):

@@ -1,5 +1,6 @@
 """Cost of each cell from its distance to obstacles and its occupancy."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids import CellWindow, distance_field
-from navette.navigation.grids.distance import MAX_RADIUS
+from navette.navigation.grids import CellWindow, distance_levels, level_metres
+from navette.navigation.grids.distance import MAX_LEVEL_RADIUS
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -18,10 +19,10 @@ from navette.navigation.planning.traversal import (
 
 # Share of the full clearance cost that applies at once where the body can no longer
 # turn in place: a step keeps paths out of there, a slope alone would not.
-_STEP = 0.2
+_STEP_SHARE = 0.2
 _STRIP = 512  # rows whose distances are computed at once
-# Distance step of the cost table.
-_LEVEL_M = 0.004
+# Distance step of the costs.
+_STEP_M = 0.004
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,13 +31,15 @@ class CellCosts:
 
     Attributes:
         reach_m: distance to obstacles from which more does not matter.
-        by_level: cost by distance, in steps of 4 mm.
+        metres: distance by level; see :class:`navette.navigation.grids.DistanceLevels`.
+        by_level: cost by that level.
         own_scale: cost by occupancy.
         unknown: least cost of an unknown cell; LETHAL where paths do not cross them.
         table: the edges that belong to the costs.
     """
 
     reach_m: float
+    metres: NDArray[np.float32]
     by_level: NDArray[np.uint8]
     own_scale: float
     unknown: np.uint8
@@ -65,12 +68,17 @@ class CellCosts:
             params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
         )
         scale = MAX_PASSABLE_COST / weight
-        count = round((free_m + resolution) / _LEVEL_M) + 2
+        count = round((free_m + resolution) / _STEP_M) + 2
         full = params.clearance_weight * scale
         floor = min(MAX_PASSABLE_COST, round(params.unknown_cost * scale))
+        reach_m = min(free_m + resolution, MAX_LEVEL_RADIUS * resolution)
+        metres = level_metres(resolution, reach_m)
+        steps = (metres * np.float32(1 / _STEP_M)).astype(np.int32)
+        by_step = _clearance_table(count, closed_m, free_m, full)
         return cls(
-            min(free_m + resolution, (MAX_RADIUS - 1) * resolution),
-            _clearance_table(count, closed_m, free_m, full),
+            reach_m,
+            metres,
+            by_step[np.minimum(steps, count - 1)],
             params.map_cost_weight * scale / 99,
             np.uint8(floor if params.allow_unknown else LETHAL),
             EdgeTable(weight),
@@ -79,20 +87,23 @@ class CellCosts:
     @property
     def far_unknown(self) -> np.uint8:
         """Cost of an unknown cell that no obstacle is near to."""
-        return max(self.by_level[-1], self.unknown)
+        return max(self.by_level[0], self.unknown)
 
     def fill(
         self,
         occupancy: NDArray[np.int8],
-        distance_m: NDArray[np.float32],
+        level: NDArray[Any],
         cost: NDArray[np.uint8],
         window: CellWindow,
     ) -> bool:
-        """Fill in the costs (H, W) of a window; return whether any cost fell."""
+        """Fill in the costs (H, W) of a window; return whether any cost fell.
+
+        ``level``: (H, W) of the distances.
+        """
         return bool(
             _fill(
                 occupancy,
-                distance_m,
+                level,
                 cost,
                 window,
                 self.by_level,
@@ -104,49 +115,44 @@ class CellCosts:
     def measure(
         self,
         obstacles: NDArray[np.uint8],
-        distance_m: NDArray[np.float32],
-        resolution: float,
+        level: NDArray[Any],
         window: CellWindow,
     ) -> CellWindow:
-        """Fill in the distances (H, W) about a window whose obstacles changed.
+        """Fill in the levels (H, W) about a window whose obstacles changed.
 
         Returns the cells whose distance may have changed.
         """
-        reach = int(np.ceil(self.reach_m / resolution))
+        reach = math.isqrt(len(self.metres) - 1) - 1  # cells
         near = window.grown(reach, obstacles.shape)
         # In strips: their work arrays are small.
         for first in range(near.first_row, near.last_row, _STRIP):
             last = min(first + _STRIP, near.last_row)
             strip = near._replace(first_row=first, last_row=last)
             around = strip.grown(reach, obstacles.shape)
-            field = distance_field(
-                np.ascontiguousarray(obstacles[around.slices]), resolution, self.reach_m
-            )
+            occupied = np.ascontiguousarray(obstacles[around.slices])
+            field = distance_levels(occupied, self.metres)
             inner = strip.shifted(-around.first_row, -around.first_column)
-            distance_m[strip.slices] = field[inner.slices]
+            level[strip.slices] = field[inner.slices]
         return near
 
 
 @kernel(allocates=False)
 def _fill(
     occupancy: Any,
-    distance_m: Any,
+    level: Any,
     cost: Any,
     window: Any,
     by_level: Any,
     own_scale: float,
     unknown: Any,
 ) -> bool:
-    last = by_level.size - 1
-    per_level = np.float32(1 / _LEVEL_M)
     fell = False
     for row in range(window.first_row, window.last_row):
         known = occupancy[row, window.first_column : window.last_column]
-        away = distance_m[row, window.first_column : window.last_column]
+        near = level[row, window.first_column : window.last_column]
         line = cost[row, window.first_column : window.last_column]
         for k in range(line.size):
-            level = np.int32(away[k] * per_level)
-            new = by_level[min(level, last)]
+            new = by_level[near[k]]
             if own_scale > 0.0:
                 own = np.uint8(min(max(known[k], 0), 99) * own_scale)
                 new = max(new, own)
@@ -158,12 +164,12 @@ def _fill(
 
 
 def _clearance_table(
-    levels: int, closed_m: float, free_m: float, full: float
+    steps: int, closed_m: float, free_m: float, full: float
 ) -> NDArray[np.uint8]:
     """Return the cost by distance step: closed, then decreasing, then free."""
-    distance = (np.arange(levels) + 0.5) * _LEVEL_M
+    distance = (np.arange(steps) + 0.5) * _STEP_M
     slope = (free_m - distance) / (free_m - closed_m)
-    falling = full * (_STEP + (1 - _STEP) * slope)
+    falling = full * (_STEP_SHARE + (1 - _STEP_SHARE) * slope)
     table = np.where(distance < free_m, falling, 0.0)
     table = np.clip(np.rint(table), 0, MAX_PASSABLE_COST).astype(np.uint8)
     table[distance < closed_m] = LETHAL

@@ -202,7 +202,7 @@ class DetourPlanner:
         begin = Pose2(*map(float, before[-1])) if len(before) else start
         grid, params = self.grid, self.params
         world = lattice.LatticeWorld(
-            distance_m=grid.distance_m,
+            distances=grid.distances,
             factor=grid.factor(),
             guide=self._guide(target, begin),
             spec=grid.spec,

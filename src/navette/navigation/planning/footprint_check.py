@@ -63,7 +63,7 @@ def clearances(
 ) -> NDArray[np.float64]:
     """Return (N,) metres between body and obstacles; see :func:`body_clearance`."""
     return body_clearance(
-        grid.distance_m,
+        grid.distances,
         grid.spec,
         body.points,
         np.ascontiguousarray(poses),

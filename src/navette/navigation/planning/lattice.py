@@ -18,11 +18,13 @@ from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.grids import (
     DistanceGrid,
+    DistanceLevels,
     GridSpec,
     ObstacleGrid,
     Outline,
-    distance_field,
+    distance_levels,
     grid_frame,
+    level_metres,
     make_body,
     make_obstacles,
 )
@@ -48,7 +50,7 @@ class LatticeWorld:
     """Map and body of a search.
 
     Attributes:
-        distance_m: (H, W) float32 metres to the nearest obstacle.
+        distances: (H, W) to the nearest obstacle.
         factor: (H, W) float32, cost of a metre in each cell (1 = free).
         guide: (H, W) cost to go to the goal, units; see :mod:`.dijkstra`.
         spec: geometry of these grids.
@@ -61,7 +63,7 @@ class LatticeWorld:
         unseen: (H, W) uint8, 1 = cells that the body does not enter in reverse.
     """
 
-    distance_m: NDArray[np.float32]
+    distances: DistanceLevels
     factor: NDArray[np.float32]
     guide: Field
     spec: GridSpec
@@ -138,9 +140,10 @@ def search(
 
 
 def _scene(world: LatticeWorld) -> LatticeScene:
-    frame, resolution = grid_frame(world.spec), world.spec.resolution
+    frame = grid_frame(world.spec)
+    unseen_m = level_metres(world.spec.resolution, 2 * world.outline.radius_m)
     return LatticeScene(
-        DistanceGrid(world.distance_m, frame, float(world.outside_m)),
+        DistanceGrid(world.distances, frame, float(world.outside_m)),
         world.factor,
         np.ascontiguousarray(world.guide),
         make_body(world.body),
@@ -148,7 +151,7 @@ def _scene(world: LatticeWorld) -> LatticeScene:
         world.outline,
         make_obstacles(world.unseen, world.spec),
         DistanceGrid(
-            distance_field(world.unseen, resolution, 2 * world.outline.radius_m),
+            DistanceLevels(distance_levels(world.unseen, unseen_m), unseen_m),
             frame,
             float(world.outside_m),
         ),

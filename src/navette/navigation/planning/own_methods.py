@@ -54,7 +54,10 @@ class PlannerGrid:
     @classmethod
     def of(cls, occupancy: NDArray[np.int8], grid: PlanningGrid) -> "PlannerGrid":
         return cls(
-            occupancy.copy(), grid.distance_m.copy(), grid.cost == LETHAL, grid.spec
+            occupancy.copy(),
+            grid.distances.everywhere(),
+            grid.cost == LETHAL,
+            grid.spec,
         )
 
     @property

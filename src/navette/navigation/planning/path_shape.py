@@ -43,7 +43,7 @@ def smooth(points: Points, grid: PlanningGrid, keep_m: float) -> Points:
     closer than before.
     """
     rounded = points.copy()
-    distances = DistanceGrid(grid.distance_m, grid_frame(grid.spec), np.inf)
+    distances = DistanceGrid(grid.distances, grid_frame(grid.spec), np.inf)
     _smooth(rounded, distances, keep_m, 60, np.empty(len(points)))
     return rounded
 

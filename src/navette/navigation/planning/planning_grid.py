@@ -15,10 +15,12 @@ from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     CellWindow,
+    DistanceLevels,
     GridSpec,
     ObstacleGrid,
     body_points,
     cells_in_footprint,
+    level_type,
     make_obstacles,
     mark_points,
     sparse_zeros,
@@ -92,7 +94,7 @@ class PlanningGrid:
     Attributes:
         spec: geometry of the grid in the map frame.
         obstacles: (H, W) uint8, 1 = lethal.
-        distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
+        distances: (H, W) to the nearest lethal cell, clipped.
         cost: (H, W) uint8 for ``table``; 255 where the base cannot be. It has a rim
             (:func:`.traversal.rimmed_costs`).
         costs: how the cells became costs.
@@ -103,7 +105,7 @@ class PlanningGrid:
 
     spec: GridSpec
     obstacles: NDArray[np.uint8]
-    distance_m: NDArray[np.float32]
+    distances: DistanceLevels
     cost: NDArray[np.uint8]
     costs: CellCosts
     margin_m: float
@@ -115,7 +117,7 @@ class PlanningGrid:
         return replace(
             self,
             obstacles=self.obstacles.copy(),
-            distance_m=self.distance_m.copy(),
+            distances=self.distances._replace(level=self.distances.level.copy()),
             cost=copy_costs(self.cost),
             cheap=None if self.cheap is None else self.cheap.copy(),
         )
@@ -174,10 +176,11 @@ class PlanningGrid:
         the grid can begin or end there.
         """
         column, row = np.floor(self.to_cells(points)).astype(np.int64).T
-        height, width = self.distance_m.shape
+        level, metres = self.distances
+        height, width = level.shape
         inside = (row >= 0) & (row < height) & (column >= 0) & (column < width)
         distance = np.zeros(len(points))
-        distance[inside] = self.distance_m[row[inside], column[inside]]
+        distance[inside] = metres[level[row[inside], column[inside]]]
         return distance
 
     def to_cells(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -206,16 +209,16 @@ def planning_grid(
     known = CellWindow.of_known(occupancy)
     obstacles = sparse_zeros(spec.shape, np.uint8)
     obstacles[known.slices] = occupancy[known.slices] >= params.lethal_cost
-    distance_m = np.full(spec.shape, costs.reach_m, np.float32)
+    level = sparse_zeros(spec.shape, level_type(costs.metres))
     cost = rimmed_costs(spec.shape, int(costs.far_unknown))
     if not known.is_empty:
-        near = costs.measure(obstacles, distance_m, spec.resolution, known)
-        costs.fill(occupancy, distance_m, cost, near)
+        near = costs.measure(obstacles, level, known)
+        costs.fill(occupancy, level, cost, near)
     has_floor = 0 < costs.unknown < LETHAL
     return PlanningGrid(
         spec,
         obstacles,
-        distance_m,
+        DistanceLevels(level, costs.metres),
         cost,
         costs,
         params.clearance_margin_m,
@@ -248,11 +251,10 @@ def update_grid(
     if not moved.is_empty:
         grid.obstacles[window.slices] = now
         moved = moved.shifted(window.first_row, window.first_column)
-        resolution = grid.spec.resolution
         window = window.union(
-            grid.costs.measure(grid.obstacles, grid.distance_m, resolution, moved)
+            grid.costs.measure(grid.obstacles, grid.distances.level, moved)
         )
-    fell = grid.costs.fill(occupancy, grid.distance_m, grid.cost, window)
+    fell = grid.costs.fill(occupancy, grid.distances.level, grid.cost, window)
     if grid.cheap is not None:
         grid.cheap.update(grid.cost, window)
     return replace(grid, hits=hits), fell
@@ -275,10 +277,9 @@ def without_obstacles_in(
     window = CellWindow(
         int(rows.min()), int(rows.max()) + 1, int(columns.min()), int(columns.max()) + 1
     )
-    changed = other.costs.measure(
-        other.obstacles, other.distance_m, other.spec.resolution, window
-    )
-    other.costs.fill(occupancy, other.distance_m, other.cost, changed)
+    level = other.distances.level
+    changed = other.costs.measure(other.obstacles, level, window)
+    other.costs.fill(occupancy, level, other.cost, changed)
     if other.cheap is not None:
         other.cheap.update(other.cost, changed)
     return other
@@ -295,9 +296,10 @@ def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
     reach = math.ceil(2 * (body.inscribed_m + grid.margin_m) / grid.spec.resolution)
     rows = slice(max(0, start[0] - reach), start[0] + reach + 1)
     columns = slice(max(0, start[1] - reach), start[1] + reach + 1)
-    least = grid.distance_m[start] - 0.5 * grid.spec.resolution
+    level, metres = grid.distances
+    least = metres[level[start]] - 0.5 * grid.spec.resolution
     cost = copy_costs(grid.cost)
-    window, distance = cost[rows, columns], grid.distance_m[rows, columns]
+    window, distance = cost[rows, columns], metres[level[rows, columns]]
     window[(window == LETHAL) & (distance >= least) & (distance > 0)] = (
         MAX_PASSABLE_COST
     )

@@ -7,11 +7,13 @@ from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     DistanceGrid,
+    DistanceLevels,
     GridSpec,
     body_clearance,
     body_points,
-    distance_field,
+    distance_levels,
     grid_frame,
+    level_metres,
     make_body,
     pose_clearance,
     pose_is_clear,
@@ -22,11 +24,14 @@ SPEC = GridSpec(0.1, 120, 90, Pose2(-4.0, 2.0, 0.7))
 HALF_DIAGONAL = 0.1 * math.sqrt(0.5)
 
 
-def field_with(*cells: tuple[int, int], spec: GridSpec = SPEC) -> np.ndarray:
+METRES = level_metres(0.1, 20.0)
+
+
+def field_with(*cells: tuple[int, int], spec: GridSpec = SPEC) -> DistanceLevels:
     occupied = np.zeros(spec.shape, np.uint8)
     for row, column in cells:
         occupied[row, column] = 1
-    return distance_field(occupied, spec.resolution, 20.0)
+    return DistanceLevels(distance_levels(occupied, METRES), METRES)
 
 
 def brute_force(body: np.ndarray, pose: Pose2, post: tuple[float, float]) -> float:
@@ -105,11 +110,15 @@ def test_pose_is_clear_agrees_with_the_clearance() -> None:
         assert clear == (exact >= needed) or abs(exact - needed) < 0.01
 
 
+def levels(shape: tuple[int, ...], dtype: type) -> DistanceLevels:
+    return DistanceLevels(np.zeros(shape, dtype), METRES)
+
+
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"distance_m": np.zeros((3, 3), np.float32)}, "distance_m: shape"),
-        ({"distance_m": np.zeros(SPEC.shape)}, "distance_m: dtype float64"),
+        ({"distances": levels((3, 3), np.uint16)}, "level: shape"),
+        ({"distances": levels(SPEC.shape, np.float64)}, "level: dtype float64"),
         ({"body": np.zeros((0, 2))}, r"body: shape \(0, 2\)"),
         ({"body": np.zeros((4, 5))}, r"body: shape \(4, 5\)"),
         ({"poses": np.zeros((4, 2))}, r"poses: shape \(4, 2\)"),
@@ -117,7 +126,7 @@ def test_pose_is_clear_agrees_with_the_clearance() -> None:
 )
 def test_bad_input_is_named(change, text) -> None:
     good = {
-        "distance_m": np.zeros(SPEC.shape, np.float32),
+        "distances": levels(SPEC.shape, np.uint16),
         "body": np.zeros((1, 2)),
         "poses": np.zeros((1, 3)),
     }

@@ -35,7 +35,7 @@ def walled(**changes: object):
 def test_cost_is_closed_near_falls_with_distance_and_ends() -> None:
     _, grid, params = walled()
     row = grid.cost[40]
-    distance = grid.distance_m[40]
+    distance = grid.distances.everywhere()[40]
     closed = distance < BODY.inscribed_m + params.clearance_margin_m - 0.01
     assert (row[closed] == LETHAL).all()
     free = distance > BODY.circumscribed_m + params.clearance_margin_m + 0.21
@@ -203,12 +203,12 @@ def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) 
         allow_unknown=bool(rng.random() < 0.7),
     )
     grid = planning_grid(occupancy, spec, BODY, params)
-    distance_m = np.empty(spec.shape, np.float32)
+    level = np.empty(spec.shape, grid.distances.level.dtype)
     cost = np.zeros(spec.shape, np.uint8)
     whole = CellWindow.whole(spec.shape)
-    grid.costs.measure(grid.obstacles, distance_m, spec.resolution, whole)
-    grid.costs.fill(occupancy, distance_m, cost, whole)
-    assert (grid.distance_m == distance_m).all()
+    grid.costs.measure(grid.obstacles, level, whole)
+    grid.costs.fill(occupancy, level, cost, whole)
+    assert (grid.distances.level == level).all()
     assert (grid.cost == cost).all()
     if grid.cheap is not None:
         every = CheapTiles(cost, int(grid.costs.unknown), whole)

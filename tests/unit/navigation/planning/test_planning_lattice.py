@@ -46,7 +46,7 @@ def plan(
     grid = planning_grid(occupancy, spec, body, params)
     grid = open_at(grid, spec.cell_of(start.x, start.y), body)
     world = LatticeWorld(
-        distance_m=grid.distance_m,
+        distances=grid.distances,
         factor=grid.factor(),
         guide=cost_to_go(
             grid.cost, [(spec.cell_of(goal.x, goal.y), 0)], table=grid.table

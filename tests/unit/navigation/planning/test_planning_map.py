@@ -62,7 +62,7 @@ def test_a_grid_changed_in_place_equals_a_fresh_one(
         grid, fell = update_grid(grid, cells, window, params.lethal_cost, grid.hits)
         fresh = planning_grid(cells, SPEC, BODY, params)
         np.testing.assert_array_equal(grid.obstacles, fresh.obstacles)
-        np.testing.assert_array_equal(grid.distance_m, fresh.distance_m)
+        np.testing.assert_array_equal(grid.distances.level, fresh.distances.level)
         np.testing.assert_array_equal(grid.cost, fresh.cost)
         assert fell == bool((grid.cost < before).any())
 

@@ -215,7 +215,7 @@ def test_the_course_robot_keeps_room_to_turn_where_there_is_room(
     plan = course.plan(Pose2(-6, 0, 0), Goal(6, -12))
     row, column = course.grid().to_cells(plan.poses[:, :2]).astype(int).T[::-1]
     needed = course.body.circumscribed_m + COURSE.clearance_margin_m
-    assert (course.grid().distance_m[row, column] >= needed).all()
+    assert (course.grid().distances.everywhere()[row, column] >= needed).all()
 
 
 @pytest.mark.parametrize(("start", "goal"), HARD_RUNS)
