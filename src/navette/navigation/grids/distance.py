@@ -15,9 +15,12 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
 from navette.navigation.grids.checks import at_least, kernel_array
+from navette.navigation.grids.windows import CellWindow
 
 # Columns per block: long enough for vector loops, short enough to skip empty space.
 BLOCK = 256
+# Columns of a row that :func:`update_levels` computes together, or leaves out.
+PART = 32
 # Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
 RADIUS_16_BIT = 179
 # Largest radius whose square fits int32.
@@ -26,6 +29,8 @@ MAX_RADIUS = 46_339
 MAX_LEVEL_RADIUS = 2_000
 
 Occupied = NDArray[np.uint8]
+Parts = NDArray[np.bool_]
+"""(H, W / PART, rounded up): parts of the rows of a grid."""
 
 
 def distance_field(
@@ -97,13 +102,62 @@ def distance_levels(occupied: Occupied, metres: NDArray[np.float32]) -> NDArray[
         metres: of :func:`level_metres`.
     """
     occupied = kernel_array("occupied", occupied, np.uint8)
-    last = len(metres) - 1
-    scratch = make_scratch(occupied.shape, math.isqrt(last) - 1)
-    table = (last - np.arange((scratch.radius + 1) ** 2 + 1)).astype(level_type(metres))
-    table[-1] = 0  # no obstacle found
+    scratch = make_scratch(occupied.shape, radius_of(metres))
+    table = _levels(metres, scratch.radius)
     level = np.empty(occupied.shape, table.dtype)
     _field_kernel(occupied, scratch, table, level)
     return level
+
+
+def all_parts(shape: tuple[int, ...]) -> Parts:
+    """Return all parts of a grid of ``shape`` (H, W)."""
+    return np.ones((shape[0], -(-shape[1] // PART)), np.bool_)
+
+
+def parts_near(cells: NDArray[np.int64], reach: int, shape: tuple[int, ...]) -> Parts:
+    """Return the parts of a grid of ``shape`` (H, W) near cells (N, 2) row, column.
+
+    ``reach`` is the largest difference of rows, and of columns.
+    """
+    parts = np.zeros((shape[0], -(-shape[1] // PART)), np.bool_)
+    _mark_parts(cells, reach, parts)
+    return parts
+
+
+def update_levels(
+    level: NDArray[Any],
+    occupied: Occupied,
+    metres: NDArray[np.float32],
+    window: CellWindow,
+    parts: Parts,
+) -> None:
+    """Compute parts of a window of :func:`distance_levels` again, in place.
+
+    Args:
+        level: (H, W) for the same distances.
+        occupied: (H, W), non-zero = obstacle.
+        metres: of :func:`level_metres`.
+        window: not empty.
+        parts: to compute; the others keep their values.
+    """
+    around = window.grown(radius_of(metres), occupied.shape)
+    obstacles = np.ascontiguousarray(occupied[around.slices])
+    scratch = make_scratch(obstacles.shape, radius_of(metres))
+    table = _levels(metres, scratch.radius)
+    _update_kernel(obstacles, scratch, table, window, around, parts, level)
+
+
+def radius_of(metres: NDArray[np.float32]) -> int:
+    """Return the largest distance of :func:`level_metres`, in cells, rounded up."""
+    return math.isqrt(len(metres) - 1) - 1
+
+
+def _levels(metres: NDArray[np.float32], radius: int) -> NDArray[Any]:
+    """Return the level by the squared distance in cells, up to (radius + 1)²."""
+    squares = np.arange((radius + 1) ** 2 + 1)
+    table = (len(metres) - 1 - squares).astype(level_type(metres))
+    table[-1] = 0  # no obstacle found
+    return table
 
 
 def _metres(
@@ -255,3 +309,65 @@ def _field_kernel(
         row, out = row_squares(scratch, r), field[r]
         for c in range(row.size):
             out[c] = table[row[c]]
+
+
+@kernel(allocates=False)
+def _mark_parts(cells: Any, reach: int, parts: Any) -> None:
+    height, width = parts.shape
+    for k in range(cells.shape[0]):
+        row, column = cells[k, 0], cells[k, 1]
+        first = max(0, column - reach) // PART
+        last = min(width - 1, (column + reach) // PART)
+        for r in range(max(0, row - reach), min(height, row + reach + 1)):
+            for part in range(first, last + 1):
+                parts[r, part] = True
+
+
+@kernel
+def _update_kernel(
+    occupied: Occupied,
+    scratch: Scratch,
+    table: NDArray[Any],
+    window: CellWindow,
+    around: CellWindow,
+    parts: Parts,
+    field: NDArray[Any],
+) -> None:
+    """Compute parts of ``window``; ``occupied`` is of the window ``around`` it."""
+    column_distances(occupied, scratch)
+    end = window.last_column
+    for r in range(window.first_row, window.last_row):
+        start = window.first_column
+        while start < end:
+            stop = min((start // PART + 1) * PART, end)
+            if not parts[r, start // PART]:
+                start = stop
+                continue
+            while stop < end and stop - start < BLOCK and parts[r, stop // PART]:
+                stop = min(stop + PART, end)
+            shift = around.first_column
+            squares = _span_squares(
+                scratch, r - around.first_row, start - shift, stop - shift
+            )
+            out = field[r, start:stop]
+            for c in range(squares.size):
+                out[c] = table[squares[c]]
+            start = stop
+
+
+@kernel
+def _span_squares(scratch: Scratch, r: int, start: int, stop: int) -> NDArray[Any]:
+    """Phase 2: squared distances of the columns [start, stop) of row ``r``."""
+    radius, padded = scratch.radius, scratch.padded
+    T = padded.dtype.type
+    first, last = max(0, start - radius), min(scratch.row.size, stop + radius)
+    columns, needed = (
+        scratch.columns[r, first:last],
+        padded[first + radius : last + radius],
+    )
+    for c in range(columns.size):
+        needed[c] = T(columns[c]) * T(columns[c])
+    span = scratch.row[start:stop]
+    limit = T((radius + 1) * (radius + 1))
+    _block_minimum(padded[start : stop + 2 * radius], radius, limit, span)
+    return span

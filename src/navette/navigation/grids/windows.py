@@ -45,6 +45,15 @@ class CellWindow(NamedTuple):
         return cls(first_row, last_row, int(columns[0]), int(columns[-1]) + 1)
 
     @classmethod
+    def of_cells(cls, cells: NDArray[np.int64]) -> "CellWindow":
+        """Return the window around cells (N, 2) row, column; may be empty."""
+        if not len(cells):
+            return NO_CELLS
+        top, left = cells.min(axis=0).tolist()
+        bottom, right = cells.max(axis=0).tolist()
+        return cls(top, bottom + 1, left, right + 1)
+
+    @classmethod
     def of_known(cls, cells: NDArray[np.int8]) -> "CellWindow":
         """Return the smallest window of all cells (H, W) that are not unknown."""
         window = NO_CELLS

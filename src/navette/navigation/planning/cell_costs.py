@@ -1,6 +1,5 @@
 """Cost of each cell from its distance to obstacles and its occupancy."""
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,8 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids import CellWindow, distance_levels, level_metres
-from navette.navigation.grids.distance import MAX_LEVEL_RADIUS
+from navette.navigation.grids import CellWindow, level_metres
+from navette.navigation.grids.distance import (
+    MAX_LEVEL_RADIUS,
+    PART,
+    Parts,
+    parts_near,
+    radius_of,
+    update_levels,
+)
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -95,10 +101,16 @@ class CellCosts:
         level: NDArray[Any],
         cost: NDArray[np.uint8],
         window: CellWindow,
+        parts: Parts,
     ) -> bool:
-        """Fill in the costs (H, W) of a window; return whether any cost fell.
+        """Fill in the costs of a window; return whether any cost fell.
 
-        ``level``: (H, W) of the distances.
+        Args:
+            occupancy: (H, W).
+            level: (H, W) of the distances.
+            cost: (H, W), changed in place.
+            window: the cells whose occupancy or distance may have changed.
+            parts: where a distance may have changed.
         """
         return bool(
             _fill(
@@ -106,6 +118,7 @@ class CellCosts:
                 level,
                 cost,
                 window,
+                parts,
                 self.by_level,
                 self.own_scale,
                 self.unknown,
@@ -116,24 +129,21 @@ class CellCosts:
         self,
         obstacles: NDArray[np.uint8],
         level: NDArray[Any],
-        window: CellWindow,
-    ) -> CellWindow:
-        """Fill in the levels (H, W) about a window whose obstacles changed.
+        cells: NDArray[np.int64],
+    ) -> tuple[CellWindow, Parts]:
+        """Fill in the levels (H, W) where obstacles changed in cells (N, 2).
 
-        Returns the cells whose distance may have changed.
+        Returns a window, and where in it distances may have changed.
         """
-        reach = math.isqrt(len(self.metres) - 1) - 1  # cells
-        near = window.grown(reach, obstacles.shape)
+        reach = radius_of(self.metres)
+        parts = parts_near(cells, reach, obstacles.shape)
+        near = CellWindow.of_cells(cells).grown(reach, obstacles.shape)
         # In strips: their work arrays are small.
         for first in range(near.first_row, near.last_row, _STRIP):
             last = min(first + _STRIP, near.last_row)
             strip = near._replace(first_row=first, last_row=last)
-            around = strip.grown(reach, obstacles.shape)
-            occupied = np.ascontiguousarray(obstacles[around.slices])
-            field = distance_levels(occupied, self.metres)
-            inner = strip.shifted(-around.first_row, -around.first_column)
-            level[strip.slices] = field[inner.slices]
-        return near
+            update_levels(level, obstacles, self.metres, strip, parts)
+        return near, parts
 
 
 @kernel(allocates=False)
@@ -142,24 +152,57 @@ def _fill(
     level: Any,
     cost: Any,
     window: Any,
+    parts: Any,
     by_level: Any,
     own_scale: float,
     unknown: Any,
 ) -> bool:
     fell = False
     for row in range(window.first_row, window.last_row):
-        known = occupancy[row, window.first_column : window.last_column]
-        near = level[row, window.first_column : window.last_column]
-        line = cost[row, window.first_column : window.last_column]
-        for k in range(line.size):
-            new = by_level[near[k]]
-            if own_scale > 0.0:
-                own = np.uint8(min(max(known[k], 0), 99) * own_scale)
-                new = max(new, own)
-            if known[k] < 0:
-                new = max(new, unknown)
-            fell |= new < line[k]
-            line[k] = new
+        first, end = window.first_column, window.last_column
+        known, line = occupancy[row, first:end], cost[row, first:end]
+        every = own_scale > 0.0 or _is_stale(known, line, unknown)
+        while first < end:
+            stop = min((first // PART + 1) * PART, end)
+            if every or parts[row, first // PART]:
+                fell |= _fill_part(
+                    occupancy[row, first:stop],
+                    level[row, first:stop],
+                    cost[row, first:stop],
+                    by_level,
+                    own_scale,
+                    unknown,
+                )
+            first = stop
+    return fell
+
+
+@kernel(allocates=False)
+def _is_stale(known: Any, line: Any, unknown: Any) -> bool:
+    """Whether cells may have become known or unknown since their costs were filled in.
+
+    This is vectorised; what is always filled in takes ten times longer.
+    """
+    stale = False
+    for k in range(known.size):
+        stale |= (line[k] < unknown) if known[k] < 0 else (line[k] == unknown)
+    return stale
+
+
+@kernel(allocates=False)
+def _fill_part(
+    known: Any, near: Any, line: Any, by_level: Any, own_scale: float, unknown: Any
+) -> bool:
+    fell = False
+    for k in range(line.size):
+        new = by_level[near[k]]
+        if own_scale > 0.0:
+            own = np.uint8(min(max(known[k], 0), 99) * own_scale)
+            new = max(new, own)
+        if known[k] < 0:
+            new = max(new, unknown)
+        fell |= new < line[k]
+        line[k] = new
     return fell
 
 

@@ -25,8 +25,10 @@ from navette.navigation.grids import (
     mark_points,
     sparse_zeros,
 )
+from navette.navigation.grids.distance import all_parts
 from navette.navigation.planning.cell_costs import CellCosts
 from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
+from navette.navigation.planning.obstacle_cells import update_obstacles
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -208,12 +210,11 @@ def planning_grid(
     # Outside the known part all cells are alike: unknown, and far from obstacles.
     known = CellWindow.of_known(occupancy)
     obstacles = sparse_zeros(spec.shape, np.uint8)
-    obstacles[known.slices] = occupancy[known.slices] >= params.lethal_cost
+    lethal = update_obstacles(obstacles, occupancy, known, params.lethal_cost)
     level = sparse_zeros(spec.shape, level_type(costs.metres))
     cost = rimmed_costs(spec.shape, int(costs.far_unknown))
-    if not known.is_empty:
-        near = costs.measure(obstacles, level, known)
-        costs.fill(occupancy, level, cost, near)
+    near, _ = costs.measure(obstacles, level, lethal)
+    costs.fill(occupancy, level, cost, known.union(near), all_parts(spec.shape))
     has_floor = 0 < costs.unknown < LETHAL
     return PlanningGrid(
         spec,
@@ -246,15 +247,11 @@ def update_grid(
     Returns:
         The grid as it is now, and whether any cost fell.
     """
-    now = (occupancy[window.slices] >= lethal_cost).astype(np.uint8)
-    moved = CellWindow.of(now != grid.obstacles[window.slices])
-    if not moved.is_empty:
-        grid.obstacles[window.slices] = now
-        moved = moved.shifted(window.first_row, window.first_column)
-        window = window.union(
-            grid.costs.measure(grid.obstacles, grid.distances.level, moved)
-        )
-    fell = grid.costs.fill(occupancy, grid.distances.level, grid.cost, window)
+    level = grid.distances.level
+    moved = update_obstacles(grid.obstacles, occupancy, window, lethal_cost)
+    near, parts = grid.costs.measure(grid.obstacles, level, moved)
+    window = window.union(near)
+    fell = grid.costs.fill(occupancy, level, grid.cost, window, parts)
     if grid.cheap is not None:
         grid.cheap.update(grid.cost, window)
     return replace(grid, hits=hits), fell
@@ -274,12 +271,9 @@ def without_obstacles_in(
         return grid
     other = grid.copy()
     other.obstacles[rows, columns] = 0
-    window = CellWindow(
-        int(rows.min()), int(rows.max()) + 1, int(columns.min()), int(columns.max()) + 1
-    )
     level = other.distances.level
-    changed = other.costs.measure(other.obstacles, level, window)
-    other.costs.fill(occupancy, level, other.cost, changed)
+    changed, parts = other.costs.measure(other.obstacles, level, inside)
+    other.costs.fill(occupancy, level, other.cost, changed, parts)
     if other.cheap is not None:
         other.cheap.update(other.cost, changed)
     return other

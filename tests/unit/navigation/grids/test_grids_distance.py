@@ -4,12 +4,14 @@ from scipy.ndimage import distance_transform_edt
 
 from navette.errors import InvalidValueError
 from navette.navigation.grids import (
+    CellWindow,
     DistanceLevels,
     distance_field,
     distance_levels,
     level_metres,
 )
 from navette.navigation.grids.checks import kernel_array
+from navette.navigation.grids.distance import parts_near, update_levels
 
 
 def squares(occupied: np.ndarray, radius: int) -> np.ndarray:
@@ -35,6 +37,22 @@ def test_distances_equal_the_exact_transform(shape, radius) -> None:
         np.testing.assert_array_equal(
             squares(occupied, radius), oracle(occupied, radius)
         )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_distances_near_changed_cells_give_the_levels_of_all_obstacles(seed) -> None:
+    rng = np.random.default_rng(seed)
+    shape, reach = (rng.integers(5, 60), rng.integers(5, 400)), int(rng.integers(1, 25))
+    occupied = (rng.random(shape) < 0.01).astype(np.uint8)
+    metres = level_metres(0.1, 0.1 * reach)
+    level = distance_levels(occupied, metres)
+    for _ in range(5):
+        cells = rng.integers(0, shape, (rng.integers(1, 6), 2))
+        occupied[cells[:, 0], cells[:, 1]] ^= 1
+        window = CellWindow.of_cells(cells).grown(reach + 1, shape)
+        parts = parts_near(cells, reach + 1, shape)
+        update_levels(level, occupied, metres, window, parts)
+        assert (level == distance_levels(occupied, metres)).all()
 
 
 def test_any_non_zero_value_is_an_obstacle() -> None:

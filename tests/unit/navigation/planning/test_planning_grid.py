@@ -8,15 +8,18 @@ from planning_worlds import COURSE_FOOTPRINT, empty_map, fill
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec
+from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec, distance_levels
+from navette.navigation.grids.distance import all_parts
 from navette.navigation.planning import path_shape
 from navette.navigation.planning.cheap_tiles import CheapTiles
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planning_grid import (
+    NO_HITS,
     BodyShape,
     open_at,
     planning_grid,
+    update_grid,
     without_obstacles_in,
 )
 from navette.navigation.planning.traversal import LETHAL
@@ -203,13 +206,39 @@ def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) 
         allow_unknown=bool(rng.random() < 0.7),
     )
     grid = planning_grid(occupancy, spec, BODY, params)
-    level = np.empty(spec.shape, grid.distances.level.dtype)
+    level = distance_levels(grid.obstacles, grid.distances.metres)
     cost = np.zeros(spec.shape, np.uint8)
     whole = CellWindow.whole(spec.shape)
-    grid.costs.measure(grid.obstacles, level, whole)
-    grid.costs.fill(occupancy, level, cost, whole)
+    grid.costs.fill(occupancy, level, cost, whole, all_parts(spec.shape))
     assert (grid.distances.level == level).all()
     assert (grid.cost == cost).all()
     if grid.cheap is not None:
         every = CheapTiles(cost, int(grid.costs.unknown), whole)
         assert (grid.cheap.distances() == every.distances()).all()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_changed_map_gives_the_grid_of_a_new_one(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    occupancy, spec = empty_map(12, 8)
+    params = PlannerParams(
+        footprint_m=COURSE_FOOTPRINT,
+        unknown_cost=float(rng.choice([0.0, 0.25, 3.0])),
+        map_cost_weight=float(rng.choice([0.0, 2.0])),
+        allow_unknown=bool(rng.random() < 0.7),
+    )
+    grid = planning_grid(occupancy, spec, BODY, params)
+    values = np.array([UNKNOWN, 0, 40, 100], np.int8)
+    for _ in range(8):
+        window = CellWindow(0, 30, 0, 40).shifted(*rng.integers(0, 50, 2))
+        window = window.grown(0, spec.shape)
+        part = occupancy[window.slices]
+        changed = rng.random(part.shape) < rng.choice([0.0, 0.002, 0.3])
+        part[changed] = rng.choice(values, part.shape, p=[0.3, 0.3, 0.3, 0.1])[changed]
+        before = grid.cost.copy()
+        grid, fell = update_grid(grid, occupancy, window, params.lethal_cost, NO_HITS)
+        new = planning_grid(occupancy, spec, BODY, params)
+        assert (grid.obstacles == new.obstacles).all()
+        assert (grid.distances.level == new.distances.level).all()
+        assert (grid.cost == new.cost).all()
+        assert fell == (grid.cost < before).any()
