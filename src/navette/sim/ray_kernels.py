@@ -13,13 +13,12 @@ sizes), ``position`` (3, m) and ``rotation`` (3, 3: world_R_shape), world frame.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 
 PLANE, BOX, SPHERE, CYLINDER, CAPSULE, ELLIPSOID, OTHER = range(7)
 
-_Floats = NDArray[np.float64]
+_WIDER = 1.0 + 1e-9  # so that rounding never loses a beam
 
 
 @kernel(allocates=False, inline="never")
@@ -199,17 +198,47 @@ def readings(distance, noise, range_min, range_max, ranges):  # type: ignore[no-
 def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
     """Centre and half width (rad) of the angles a shape can cover; half < 0: none."""
     if kind == PLANE:
-        return 0.0, math.pi
+        height = -(m[0, 2] * c[0] + m[1, 2] * c[1] + m[2, 2] * c[2])
+        steepest = math.hypot(m[0, 2], m[1, 2])
+        is_far = height > _WIDER * reach * steepest
+        return 0.0, -1.0 if is_far else math.pi
     hx, hy, hz = _half_box(kind, size)
-    ex = abs(m[0, 0]) * hx + abs(m[0, 1]) * hy + abs(m[0, 2]) * hz
-    ey = abs(m[1, 0]) * hx + abs(m[1, 1]) * hy + abs(m[1, 2]) * hz
     ez = abs(m[2, 0]) * hx + abs(m[2, 1]) * hy + abs(m[2, 2]) * hz
-    away, around = math.hypot(c[0], c[1]), math.hypot(ex, ey)
+    if kind == CYLINDER:
+        around = hx + hz * math.hypot(m[0, 2], m[1, 2])
+    else:
+        ex = abs(m[0, 0]) * hx + abs(m[0, 1]) * hy + abs(m[0, 2]) * hz
+        ey = abs(m[1, 0]) * hx + abs(m[1, 1]) * hy + abs(m[1, 2]) * hz
+        around = math.hypot(ex, ey)
+    away = math.hypot(c[0], c[1])
     if abs(c[2]) > ez or away - around > reach:
         return 0.0, -1.0
+    if kind == BOX:
+        return _bearing_of_box(hx, hy, hz, m, c)
     if away <= around:
         return 0.0, math.pi
-    return math.atan2(c[1], c[0]), math.asin(around / away)
+    return math.atan2(c[1], c[0]), _WIDER * math.asin(around / away)
+
+
+@kernel(allocates=False, inline="never")
+def _bearing_of_box(hx, hy, hz, m, c):  # type: ignore[no-untyped-def]
+    """Centre and half width (rad) of the angles between a box's corners.
+
+    A circle around a long wall would cover several times as many beams.
+    """
+    low, high = math.inf, -math.inf
+    for i in range(8):
+        x = hx if i & 1 else -hx
+        y = hy if i & 2 else -hy
+        z = hz if i & 4 else -hz
+        px = c[0] + m[0, 0] * x + m[0, 1] * y + m[0, 2] * z
+        py = c[1] + m[1, 0] * x + m[1, 1] * y + m[1, 2] * z
+        turn = math.atan2(c[0] * py - c[1] * px, c[0] * px + c[1] * py)  # from centre
+        low, high = min(low, turn), max(high, turn)
+    if high - low >= math.pi:  # the origin is among the corners
+        return 0.0, math.pi
+    middle = math.atan2(c[1], c[0]) + (low + high) / 2
+    return middle, _WIDER * (high - low) / 2
 
 
 @kernel(inline="never")

@@ -8,6 +8,7 @@ import pytest
 
 from navette.geometry import Pose2, Transform3, quaternion_from_rpy
 from navette.sim import Scene, SimParams, Simulator, World, load_robot, load_world
+from navette.sim.build import compile_scene
 from navette.sim.camera import pixel_rays
 from navette.sim.camera_gl import GlCamera, probe
 from navette.sim.mount import Mount
@@ -81,6 +82,34 @@ def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     )  # fmt: skip
     beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, np.inf)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_fans_between_walls_equal_mujocos(seed: int) -> None:
+    """The circle around a long wall contains the sensor, and its corners do not."""
+    rng = np.random.default_rng(seed)
+    world = World()
+    for _ in range(12):
+        x, y, yaw = rng.uniform((-6, -6, -3), (6, 6, 3)).tolist()
+        size = (float(rng.uniform(0.5, 15)), float(rng.uniform(0.02, 0.3)))
+        world.add_box((x, y), size, yaw=yaw)
+    scene = world.scene().with_robot(load_robot("turtlebot3_burger").model)
+    compiled = compile_scene(scene, timestep_s=0.005)
+    model, data = compiled.model, mujoco.MjData(compiled.model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    tilt = quaternion_from_rpy(*rng.uniform(-1e-3, 1e-3, 2).tolist(), 0.0)
+    origin, rotation = Mount(0, Transform3((0.0, 0.0, 0.3), tilt)).world(data)
+    angles = np.linspace(-np.pi, np.pi, 361)
+    ours = np.empty(len(angles))
+    cast_fan(
+        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
+        angles, np.column_stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
+    )  # fmt: skip
+    beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, 30.0)
     np.testing.assert_allclose(ours, theirs, rtol=1e-6)
 
 
