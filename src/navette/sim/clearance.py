@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exact distance from the robot's body to the nearest obstacle."""
 
+import math
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.sim.build import Compiled
 from navette.sim.masks import OBSTACLE
 
@@ -31,11 +33,12 @@ class ClearanceProbe:
         self._compiled = compiled
         obstacles = np.flatnonzero(compiled.is_obstacle)
         self._obstacles = obstacles
-        self._fixed = np.array(model.geom_bodyid)[obstacles] == 0
+        self._moving = np.flatnonzero(np.array(model.geom_bodyid)[obstacles] != 0)
         self._parts = np.flatnonzero(compiled.is_robot & _meets_obstacles(model))
         self._part_radius = np.array(model.geom_rbound)[self._parts]
         self._low, self._high = bounds_of(model, data, obstacles)
         self._radius = np.array(model.geom_rbound)[obstacles]
+        self._bounds = np.empty(len(obstacles))
         self.reach = self._farthest(data)
 
     def _farthest(self, data: mujoco.MjData) -> float:
@@ -49,37 +52,57 @@ class ClearanceProbe:
         if not len(self._obstacles):
             return Clearance(np.inf, "")
         model = self._compiled.model
-        bound = self._lowerbounds_of(data)
+        self._update_bounds(data)
         best, nearest = np.inf, -1
-        for i in np.argsort(bound):
-            if bound[i] >= best:
+        for i in np.argsort(self._bounds).tolist():
+            if self._bounds[i] >= best:
                 break
             obstacle = int(self._obstacles[i])
-            for part in self._parts:
+            for part in self._parts.tolist():
                 limit = min(best, 1e3)
                 distance = mujoco.mj_geomDistance(
-                    model, data, int(part), obstacle, limit, None
+                    model, data, part, obstacle, limit, None
                 )
                 if distance < best:
                     best, nearest = distance, obstacle
         return Clearance(float(best), self._compiled.geom_owner[nearest])
 
-    def _lowerbounds_of(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Return a lower bound of the distance for each obstacle."""
-        centres = data.geom_xpos[self._parts]
-        centre = centres.sum(axis=0) / len(centres)
-        away = np.linalg.norm(centres - centre, axis=1)
-        around = float((away + self._part_radius).max())
-        low, high = self._low, self._high
-        if not self._fixed.all():
-            moving = ~self._fixed
+    def _update_bounds(self, data: mujoco.MjData) -> None:
+        """Write a lower bound of the distance for each obstacle."""
+        moving = self._moving
+        if len(moving):
             places = data.geom_xpos[self._obstacles[moving]]
             reach = self._radius[moving, None]
-            low, high = low.copy(), high.copy()
-            low[moving], high[moving] = places - reach, places + reach
-        gap = np.maximum(np.maximum(low - centre, centre - high), 0.0)
-        bounds: NDArray[np.float64] = np.linalg.norm(gap, axis=1) - around
-        return bounds
+            self._low[moving], self._high[moving] = places - reach, places + reach
+        centres = data.geom_xpos[self._parts]
+        _lower_bounds(centres, self._part_radius, self._low, self._high, self._bounds)
+
+
+@kernel
+def _lower_bounds(centres, radius, low, high, bounds):  # type: ignore[no-untyped-def]
+    """Write lower bounds (N,) of the distances from balls to boxes, m.
+
+    Args:
+        centres: (P, 3) of the balls, whose surrounding ball is compared.
+        radius: (P,) of the balls.
+        low, high: (N, 3) corners of the boxes.
+    """
+    count = len(centres)
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(count):
+        x += centres[i, 0]
+        y += centres[i, 1]
+        z += centres[i, 2]
+    x, y, z = x / count, y / count, z / count
+    around = 0.0
+    for i in range(count):
+        dx, dy, dz = centres[i, 0] - x, centres[i, 1] - y, centres[i, 2] - z
+        around = max(around, math.sqrt(dx * dx + dy * dy + dz * dz) + radius[i])
+    for i in range(len(bounds)):
+        dx = max(low[i, 0] - x, x - high[i, 0], 0.0)
+        dy = max(low[i, 1] - y, y - high[i, 1], 0.0)
+        dz = max(low[i, 2] - z, z - high[i, 2], 0.0)
+        bounds[i] = math.sqrt(dx * dx + dy * dy + dz * dz) - around
 
 
 def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 """Motor controller: velocity commands to wheel speeds and steering, within limits."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from navette.sim.drive_geometry import DriveWheel
 from navette.sim.params import CONTROL_PERIOD_S, SimParams
@@ -13,8 +13,7 @@ CONTROL_PERIOD_NS = round(CONTROL_PERIOD_S * 1e9)
 _STEER_FROM_MPS = 1e-3
 
 
-@dataclass(frozen=True)
-class BodySpeed:
+class BodySpeed(NamedTuple):
     """Speed forward (m/s), yaw rate (rad/s) and speed to the left of the base.
 
     ``steering`` is the angle (rad) of an Ackermann drive.

@@ -24,19 +24,15 @@ from navette.sim.camera import Camera, Image
 from navette.sim.camera_gl import GlCamera
 from navette.sim.clearance import Clearance, ClearanceProbe
 from navette.sim.contacts import ContactMonitor
-from navette.sim.drive import (
-    CONTROL_PERIOD_NS,
-    SteeringRamp,
-    make_ramp,
-    rim_speed,
-)
+from navette.sim.drive import CONTROL_PERIOD_NS, SteeringRamp, make_ramp
+from navette.sim.drive_outputs import DriveOutputs
 from navette.sim.imu import Imu, ImuReading
 from navette.sim.instant import Instant
 from navette.sim.lidar import Lidar, Scan
 from navette.sim.outlines import outlines_of
 from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
-from navette.sim.scene import AckermannDrive, Scene
+from navette.sim.scene import Scene
 from navette.sim.sensor_specs import (
     CameraSensor,
     ImuSensor,
@@ -45,7 +41,6 @@ from navette.sim.sensor_specs import (
     Sensor,
 )
 from navette.sim.sensors import make_devices
-from navette.sim.steering import steering_angles
 from navette.sim.wheel_odometry import WheelErrors, WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
@@ -81,7 +76,11 @@ class Simulator:
         self.params = params or SimParams()
         self.compiled = compile_scene(scene, timestep_s=self.params.timestep_s)
         self._step_ns = round(self.params.timestep_s * 1e9)
+        # Steps from one update of the drive, or check of the state, to the next.
+        self._control_steps = max(1, CONTROL_PERIOD_NS // self._step_ns)
+        self._watch_steps = max(1, _WATCH_PERIOD_NS // self._step_ns)
         self._data = mujoco.MjData(self.compiled.model)
+        self._drive = DriveOutputs(self.compiled.robot, self._data)
         self.actors = Actors(self.compiled)
         self.actors.place(self._data, 0)
         self._start = start
@@ -115,7 +114,7 @@ class Simulator:
         self._seed_noise()
         self._steps = 0
         self._fresh_at = -1
-        self._near = True
+        self._free_until = 0  # the step from which contact is possible
         self._ramp.reset()
         self.contacts.reset()
         self.min_clearance = Clearance(math.inf, "")
@@ -215,19 +214,18 @@ class Simulator:
 
     def step(self, count: int = 1) -> None:
         end = self._steps + count
-        control = max(1, CONTROL_PERIOD_NS // self._step_ns)
-        watch = max(1, _WATCH_PERIOD_NS // self._step_ns)
         while self._steps < end:
-            if self._steps % control == 0:
-                self._drive()
-            if self._steps % watch == 0:
+            if self._steps % self._control_steps == 0:
+                self._drive.set(self._ramp.advance(self.now_ns))
+            if self._steps % self._watch_steps == 0:
                 self._watch()
-            batch = min(end, self._next_event(control, watch)) - self._steps
-            if self._near:
-                self._step_checking_contacts(batch)
-            else:
+            until = min(end, self._next_event())
+            if self._steps < self._free_until:
+                batch = min(until, self._free_until) - self._steps
                 mujoco.mj_step(self.compiled.model, self._data, batch)
                 self._steps += batch
+            else:
+                self._step_checking_contacts(until - self._steps)
 
     def advance_to(self, now_ns: int) -> None:
         """Advance to the last physics step at or before ``now_ns``."""
@@ -235,14 +233,15 @@ class Simulator:
         if count > 0:
             self.step(count)
 
-    def _next_event(self, control: int, watch: int) -> int:
+    def _next_event(self) -> int:
         """Return the step at which the drive or the contact check acts next."""
+        control, watch = self._control_steps, self._watch_steps
         next_watch = (self._steps // watch + 1) * watch
         constant_until = self._ramp.constant_until_ns() / self._step_ns
         if constant_until >= next_watch:
             return next_watch
         tick = max(self._steps + 1, math.ceil(constant_until))
-        return min(next_watch, math.ceil(tick / control) * control)
+        return min(next_watch, -(-tick // control) * control)
 
     def _step_checking_contacts(self, count: int) -> None:
         """Step singly, so that no short contact is missed."""
@@ -255,23 +254,8 @@ class Simulator:
             if data.ncon:
                 self.contacts.observe(data, self.now_ns)
 
-    def _drive(self) -> None:
-        speed = self._ramp.advance(self.now_ns)
-        drive = self.compiled.robot.drive
-        robot, ctrl = self.compiled.robot, self._data.ctrl
-        rims = [rim_speed(wheel, drive, speed) for wheel in robot.wheels]
-        for wheel, actuator, rim in zip(
-            robot.wheels, robot.actuators, rims, strict=True
-        ):
-            ctrl[actuator] = wheel.direction * rim / drive.wheel_radius
-        if robot.steering is not None:
-            assert isinstance(drive, AckermannDrive)
-            ctrl[list(robot.steering)] = steering_angles(drive, speed.steering)
-        if len(robot.traction):
-            ctrl[robot.traction] = rims
-
     def _watch(self) -> None:
-        """Measure clearance; decide whether contact is possible until the next."""
+        """Measure clearance; decide when contact is possible before the next."""
         self._check_physics()
         clearance = self.clearance()
         if clearance.distance < self.min_clearance.distance:
@@ -282,16 +266,17 @@ class Simulator:
         fastest = math.hypot(*motion.linear) + math.hypot(*motion.angular) * reach
         linear_growth = max(self.params.max_accel_mps2, self.params.max_decel_mps2)
         growth = linear_growth + self.params.max_yaw_accel_radps2 * reach
-        period_s = _WATCH_PERIOD_NS * 1e-9
-        fastest += self.actors.fastest_mps
-        margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
-        self._near = clearance.distance < margin or self.actors.jump_within(
-            self.now_ns, _WATCH_PERIOD_NS
-        )
+        fastest += self.actors.fastest_mps + growth * _WATCH_PERIOD_NS * 1e-9
+        free_s = (clearance.distance - 0.01) / (1.5 * fastest + 1e-9)
+        if self.actors.jump_within(self.now_ns, _WATCH_PERIOD_NS):
+            free_s = 0.0
+        free_ns = min(max(0.0, free_s * 1e9), _WATCH_PERIOD_NS)
+        self._free_until = self._steps + int(free_ns) // self._step_ns
 
     def _check_physics(self) -> None:
         """Raise if the state diverged; MuJoCo itself would reset it silently."""
-        if self._data.warning.number[_BLOWN_UP].any():
+        number = self._data.warning.number.tolist()
+        if any(number[warning] for warning in _BLOWN_UP):
             raise InvalidValueError(
                 "physics became unstable: check for extreme masses, sizes or speeds in "
                 f"the robot's model ({self.now_ns / 1e9:.3f} s)"
