@@ -57,7 +57,8 @@ class BeamSensor:
     def set_noise(self, params: SimParams) -> None:
         """Set noise and share of lost beams; below 0 means the sensor's own noise."""
         own = params.lidar_noise_m < 0
-        self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
+        stddev = self.sensor.noise_stddev if own else params.lidar_noise_m
+        self._noise_m = float(stddev)
         self._dropout = params.lidar_dropout
 
 
@@ -80,7 +81,7 @@ class Lidar(BeamSensor):
             float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
         )
         self._beams = np.array([(math.cos(a), math.sin(a)) for a in self._angles])
-        self._distance, self._no_noise = np.empty(n), np.zeros(n)
+        self._distance, self._noise = np.empty(n), np.zeros(n)
 
     def warm_up(self) -> None:
         """Compile the kernels, which takes seconds on the very first run."""
@@ -90,7 +91,7 @@ class Lidar(BeamSensor):
             np.zeros(3), np.eye(3), self._angles, self._beams, 1.0, self._distance,
         )  # fmt: skip
         readings(
-            self._distance, self._no_noise, self.sensor.range_min,
+            self._distance, self._noise, 0.0, self.sensor.range_min,
             self.sensor.range_max, np.empty(len(self._angles), np.float32),
         )  # fmt: skip
 
@@ -98,11 +99,10 @@ class Lidar(BeamSensor):
         """Cast all beams."""
         s, stamp_ns = self.sensor, instant.stamp_ns
         distance = self._cast(instant.model, instant.data)
-        noise = self._no_noise
         if self._noise_m > 0:
-            noise = rng.normal(0.0, self._noise_m, s.samples)
+            rng.standard_normal(out=self._noise)
         ranges = np.empty(s.samples, np.float32)
-        readings(distance, noise, s.range_min, s.range_max, ranges)
+        readings(distance, self._noise, self._noise_m, s.range_min, s.range_max, ranges)
         if self._dropout > 0:
             ranges[rng.random(s.samples) < self._dropout] = np.nan
         return Scan(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convert the simulator's values to ROS messages."""
 
+import struct
 from collections.abc import Sequence
 
 import numpy as np
@@ -133,21 +134,27 @@ def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> Lase
     Subscribers in this process then receive the same numbers as readers of a bag or
     subscribers in another process.
     """
-    angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+    first, step, count = scan.angle_min, scan.angle_increment, len(scan.ranges)
+    angle_min, angle_max, angle_increment, scan_time, range_min, range_max = _rounded(
+        first, first + step * (count - 1), step, period_s,
+        scan.range_min, scan.range_max,
+    )  # fmt: skip
     return LaserScan(
         header=header(stamp_ns, frame),
-        angle_min=_single(scan.angle_min),
-        angle_max=_single(angle_max),
-        angle_increment=_single(scan.angle_increment),
-        scan_time=_single(period_s),
-        range_min=_single(scan.range_min),
-        range_max=_single(scan.range_max),
+        angle_min=angle_min,
+        angle_max=angle_max,
+        angle_increment=angle_increment,
+        scan_time=scan_time,
+        range_min=range_min,
+        range_max=range_max,
         ranges=scan.ranges,
     )
 
 
-def _single(value: float) -> float:
-    return float(np.float32(value))
+def _rounded(*values: float) -> tuple[float, ...]:
+    """Return the nearest numbers of 32 bits."""
+    layout = f"{len(values)}f"
+    return struct.unpack(layout, struct.pack(layout, *values))
 
 
 def imu_message(

@@ -248,8 +248,7 @@ class SimNode(StageNode):
 
     def _advance(self) -> int:
         """Advance physics to the current time; return the stamp of its state."""
-        now_ns = self.get_clock().now_ns
-        self.simulator.advance_to(now_ns - self._origin_ns)
+        self.simulator.advance_to(self._clock.now_ns - self._origin_ns)
         return self.stamp_ns
 
     # Outputs
@@ -291,7 +290,8 @@ class SimNode(StageNode):
             self._every(p.joint_tf_rate_hz, self._publish_joint_tf, topics.TF.name)
         for topic in self._sensor_topics:
             self._add_publisher(topic)
-            publish = partial(self._publish_sensor, topic)
+            frame = self.frames.of_sensor(topic.link, topic.sensor)
+            publish = partial(self._publish_sensor, topic, frame)
             self._every(topic.sensor.rate_hz, publish, topic.name)
         bumpers = self.simulator.devices[ContactSensor]
         if bumpers:
@@ -337,12 +337,11 @@ class SimNode(StageNode):
                 like.msg_type, topic.name, like.qos_profile
             )
 
-    def _publish_sensor(self, topic: SensorTopic, stamp_ns: int) -> None:
+    def _publish_sensor(self, topic: SensorTopic, frame: str, stamp_ns: int) -> None:
         sensor, output = topic.sensor, output_of(topic)
         reading = None
         if output.needs_reading:
             reading = self._reading(type(sensor), topic.index, stamp_ns)
-        frame = self.frames.of_sensor(topic.link, sensor)
         # With the noise of the parameters, which the message states.
         used = self.simulator.devices[type(sensor)][topic.index].sensor
         self.hand_over(topic.name, output.message(reading, used, stamp_ns, frame))

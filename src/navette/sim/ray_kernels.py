@@ -182,15 +182,20 @@ def cast_fan(  # type: ignore[no-untyped-def]
 
 
 @kernel
-def readings(distance, noise, range_min, range_max, ranges):  # type: ignore[no-untyped-def]
+def readings(  # type: ignore[no-untyped-def]
+    distance, noise, stddev, range_min, range_max, ranges
+):
     """Write the measured ranges (N,) float32 of true distances (N,), m.
 
     inf: nothing within ``range_max``; −inf: closer than ``range_min``.
+
+    Args:
+        noise: (N,) standard normal; its standard deviation becomes ``stddev`` (m).
     """
     least = np.float32(range_min)
     for i in range(ranges.size):
         there = distance[i] if distance[i] <= range_max else np.inf
-        measured = np.float32(there + noise[i])
+        measured = np.float32(there + stddev * noise[i])
         ranges[i] = np.float32(-np.inf) if measured < least else measured
 
 
