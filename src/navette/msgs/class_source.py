@@ -30,6 +30,7 @@ def generate(spec: MessageSpec, nested: list[type[Message] | None]) -> dict[str,
         "_new": object.__new__,
         "_ndarray": np.ndarray,
         "_array": array,
+        "_len": len,  # a field may be named len
         "_refuse_keywords": refuse_keywords,
     }
     for index, field in enumerate(spec.fields):
@@ -61,6 +62,9 @@ def _constructor(spec: MessageSpec) -> list[str]:
         name = f"_{field.name}" if keyword.iskeyword(field.name) else field.name
         lines.append(f" if {name} is _DEFAULT:")
         lines.append(f"  _self._{field.name} = {_default_expression(index, field)}")
+        if field.type.is_scalar:  # most fields: without a call
+            lines.append(f" elif {_quick_test(index, field, name)}:")
+            lines.append(f"  _self._{field.name} = {name}")
         lines.append(" else:")
         lines.append(f"  _set_{index}(_self, {name})")
     return lines
@@ -70,7 +74,7 @@ def _setters(spec: MessageSpec) -> list[str]:
     lines = []
     for index, field in enumerate(spec.fields):
         lines.append(f"def _set_{index}(_self, _value):")
-        lines.append(f" if not ({_quick_test(index, field)}):")
+        lines.append(f" if not ({_quick_test(index, field, '_value')}):")
         lines.append(f"  _value = _check_{index}(_value)")
         if field.type.is_numeric and not field.type.is_scalar:
             # As in rclpy, a message does not share an array with the caller.
@@ -89,43 +93,47 @@ def _maker(spec: MessageSpec) -> list[str]:
     return [*lines, " return _m"]
 
 
-def _quick_test(index: int, field: Field) -> str:
-    """Expression that is true for common valid values and false for invalid ones."""
+def _quick_test(index: int, field: Field, name: str) -> str:
+    """Expression that is true for common valid values and false for invalid ones.
+
+    Args:
+        name: of the variable that holds the value.
+    """
     type_ = field.type
     if not type_.is_scalar:
         if not type_.is_numeric:
             return "False"
-        return _quick_array_test(index, type_)
+        return _quick_array_test(index, type_, name)
     if type_.is_message:
-        return f"_value.__class__ is _class_{index}"
+        return f"{name}.__class__ is _class_{index}"
     if type_.is_string:
-        test = "_value.__class__ is str"
+        test = f"{name}.__class__ is str"
         bound = type_.string_bound
-        return test if bound is None else f"{test} and len(_value) <= {bound}"
+        return test if bound is None else f"{test} and _len({name}) <= {bound}"
     if type_.base in INTEGER_RANGES:
         low, high = INTEGER_RANGES[type_.base]
-        return f"_value.__class__ is int and {low} <= _value <= {high}"
+        return f"{name}.__class__ is int and {low} <= {name} <= {high}"
     return {
-        "bool": "_value.__class__ is bool",
-        "byte": "_value.__class__ is bytes and len(_value) == 1",
-        "float64": "_value.__class__ is float",
+        "bool": f"{name}.__class__ is bool",
+        "byte": f"{name}.__class__ is bytes and _len({name}) == 1",
+        "float64": f"{name}.__class__ is float",
         "float32": (
-            "_value.__class__ is float"
-            f" and {-FLOAT32_MAX!r} <= _value <= {FLOAT32_MAX!r}"
+            f"{name}.__class__ is float"
+            f" and {-FLOAT32_MAX!r} <= {name} <= {FLOAT32_MAX!r}"
         ),
     }[type_.base]
 
 
-def _quick_array_test(index: int, type_: FieldType) -> str:
+def _quick_array_test(index: int, type_: FieldType, name: str) -> str:
     if type_.container == "array":
         return (
-            f"_value.__class__ is _ndarray and _value.dtype is _dtype_{index}"
-            " and _value.ndim == 1 and _value.flags.c_contiguous"
-            f" and len(_value) == {type_.size}"
+            f"{name}.__class__ is _ndarray and {name}.dtype is _dtype_{index}"
+            f" and {name}.ndim == 1 and {name}.flags.c_contiguous"
+            f" and _len({name}) == {type_.size}"
         )
     code = TYPECODES[type_.base]
-    test = f"_value.__class__ is _array and _value.typecode == {code!r}"
-    return test if type_.size is None else f"{test} and len(_value) <= {type_.size}"
+    test = f"{name}.__class__ is _array and {name}.typecode == {code!r}"
+    return test if type_.size is None else f"{test} and _len({name}) <= {type_.size}"
 
 
 def _default_value(field: Field, nested: type[Message] | None) -> Any:
