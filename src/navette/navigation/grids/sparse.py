@@ -15,6 +15,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 # Below this NumPy's own arrays are as good: they use large pages, which are faster.
 _LARGE_BYTES = 40 << 20
 _NO_COLUMN = 1 << 40
+_STRIP = 256  # rows that are copied before their memory is returned
 _MOST_ROOM = 2000  # cells on each side of a grid into which it grows without a copy
 
 
@@ -24,11 +25,19 @@ def sparse_zeros(shape: tuple[int, ...], dtype: type[Scalar]) -> NDArray[Scalar]
     NumPy requests pages of 2 MB for large arrays, so that a narrow band of writes
     through a map occupies all of it.
     """
+    return _zeros(shape, dtype)[0]
+
+
+def _zeros(
+    shape: tuple[int, ...], dtype: type[Scalar]
+) -> tuple[NDArray[Scalar], mmap.mmap | None]:
+    """Return :func:`sparse_zeros`, and their memory if it is not NumPy's."""
     size = math.prod(shape)
     length = size * np.dtype(dtype).itemsize
     if length < _LARGE_BYTES:
-        return np.zeros(shape, dtype)
-    return np.frombuffer(mmap.mmap(-1, length), dtype, size).reshape(shape)
+        return np.zeros(shape, dtype), None
+    memory = mmap.mmap(-1, length)
+    return np.frombuffer(memory, dtype, size).reshape(shape), memory
 
 
 Padding = tuple[tuple[int, int], tuple[int, int]]
@@ -51,6 +60,10 @@ class RowSpans:
         last = self.last[window.first_row : window.last_row]
         np.minimum(first, window.first_column, out=first)
         np.maximum(last, window.last_column, out=last)
+
+    def columns(self, rows: slice) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the first column of each of these rows, and the one after the last."""
+        return self.first[rows], self.last[rows]
 
     def grow(self, pad: Padding) -> None:
         """Follow arrays that are padded."""
@@ -86,20 +99,26 @@ class SparseGrid(Generic[Scalar]):
         height, width = before.shape
         shape = (above + height + below, left + width + right)
         row, column = self._row - above, self._column - left
-        rows, columns = self._space.shape
-        has_space = row >= 0 and row + shape[0] <= rows
-        if has_space and column >= 0 and column + shape[1] < columns:
+        most_rows, most_columns = self._space.shape
+        has_space = row >= 0 and row + shape[0] <= most_rows
+        if has_space and column >= 0 and column + shape[1] < most_columns:
             self._use(row, column, shape)
             return
+        memory, top, row_bytes = self._memory, self._row, self._space.strides[0]
         self._reserve(shape)
-        _copy_non_zeros(before, self.cells, above, left, written.first, written.last)
+        for first in range(0, height, _STRIP):
+            strip = slice(first, first + _STRIP)
+            at, columns = (above + first, left), written.columns(strip)
+            _copy_non_zeros(before[strip], self.cells, at, *columns)
+            if memory is not None:
+                _release(memory, (top + strip.stop) * row_bytes)
 
     def _reserve(self, shape: tuple[int, ...]) -> None:
         height, width = shape
         room = min(max(shape) // 2, _MOST_ROOM)
         # One column more, so that kernels always get a part of the rows.
         size = (height + 2 * room, width + 2 * room + 1)
-        self._space = sparse_zeros(size, self._dtype)
+        self._space, self._memory = _zeros(size, self._dtype)
         self._use(room, room, (height, width))
 
     def _use(self, row: int, column: int, shape: tuple[int, int]) -> None:
@@ -108,12 +127,19 @@ class SparseGrid(Generic[Scalar]):
         self.cells: NDArray[Scalar] = self._space[rows, columns]
 
 
+def _release(memory: mmap.mmap, length: int) -> None:
+    """Return the first bytes of memory that is not read again to the system."""
+    whole_pages = min(length, len(memory)) // mmap.PAGESIZE * mmap.PAGESIZE
+    if whole_pages and hasattr(mmap, "MADV_REMOVE"):  # Linux
+        memory.madvise(mmap.MADV_REMOVE, 0, whole_pages)
+
+
 @kernel
 def _copy_non_zeros(
-    array: Any, padded: Any, above: int, left: int, first: Any, last: Any
+    array: Any, padded: Any, at: tuple[int, int], first: Any, last: Any
 ) -> None:
     """Copy the non-zeros of each row: a page without one stays without memory."""
     for row in range(first.size):
         for column in range(first[row], last[row]):
             if array[row, column] != 0:
-                padded[above + row, left + column] = array[row, column]
+                padded[at[0] + row, at[1] + column] = array[row, column]

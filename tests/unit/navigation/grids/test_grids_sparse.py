@@ -55,6 +55,23 @@ def test_only_what_was_written_is_copied_when_a_grid_grows_again() -> None:
         written.grow(pad)
 
 
+def test_a_large_grid_returns_the_memory_of_its_copied_rows() -> None:
+    """Its values survive, whichever rows they are in."""
+    grid = SparseGrid((2000, 2000), np.uint64)
+    rows, columns = np.random.default_rng(2).integers(0, 2000, (2, 500))
+    grid.cells[rows, columns] = 1 + np.arange(500, dtype=np.uint64)
+    written = RowSpans(2000)
+    for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
+        written.add(CellWindow(row, row + 1, column, column + 1))
+    before = grid.cells
+    expected = before[rows, columns].copy()
+    grid.grow(((1500, 10), (20, 1500)), written)
+    assert grid.cells.shape == (3510, 3520)
+    assert not np.shares_memory(before, grid.cells)
+    np.testing.assert_array_equal(grid.cells[rows + 1500, columns + 20], expected)
+    assert np.count_nonzero(grid.cells) == len(np.unique(rows * 2000 + columns))
+
+
 def test_a_cleared_grid_keeps_its_extent() -> None:
     grid = SparseGrid((4, 5), np.uint8)
     grid.cells[:] = 1
