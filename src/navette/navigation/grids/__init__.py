@@ -43,6 +43,7 @@ from navette.navigation.grids.hit_points import (
     points_to_message,
 )
 from navette.navigation.grids.inflation import cost_table, inflate
+from navette.navigation.grids.marked_cells import MarkedCells, marked_cells
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import (
     grid_from_message,
@@ -73,9 +74,7 @@ from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_
 from navette.navigation.grids.sub_cells import (
     cell_points,
     mark_points,
-    marked_points,
     point_radius,
-    points_by_cell,
 )
 from navette.navigation.grids.unseen import (
     Layer,
@@ -155,9 +154,9 @@ __all__ = [
     "points_to_message",
     "points_from_message",
     "mark_points",
-    "marked_points",
+    "MarkedCells",
+    "marked_cells",
     "cell_points",
-    "points_by_cell",
     "point_radius",
     "grid_to_message",
     "window_from_message",

@@ -14,7 +14,7 @@ import numpy as np
 
 from navette.files.kernels import kernel
 from navette.geometry import Pose2
-from navette.navigation.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
+from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
 
 # Source coordinates along a row advance in fixed point: exact and fast.
 FRACTION_BITS = 32
@@ -70,7 +70,7 @@ def _cell_transform(outer: GridSpec, inner: GridSpec) -> Affine:
     )
 
 
-@kernel
+@kernel(allocates=False)
 def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]:
     """First and last row (exclusive) of the target that the source can overlap."""
     height, width = source.shape
@@ -82,7 +82,7 @@ def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]
     return max(0, math.floor(low)), min(rows, math.ceil(high) + 1)
 
 
-@kernel
+@kernel(allocates=False)
 def _limits(start: float, step: float, size: int, low: float, high: float) -> Any:
     """[low, high] narrowed to the t with 0 <= start + t · step < size."""
     if abs(step) < 1e-12:
@@ -93,7 +93,7 @@ def _limits(start: float, step: float, size: int, low: float, high: float) -> An
     return max(low, min(at_zero, at_size)), min(high, max(at_zero, at_size))
 
 
-@kernel
+@kernel(allocates=False)
 def pull_row(
     source: Cells, alignment: Alignment, row: int, lethal_as: np.int8, pulled: Cells
 ) -> tuple[int, int]:
@@ -123,38 +123,45 @@ def pull_row(
         fu + (last - 1 - first) * du, fv + (last - 1 - first) * dv, width, height
     ):
         last -= 1
-    for c in range(first, last):
-        # An unsigned index avoids the check for negative ones.
-        value = flat[np.uint64((fv >> FRACTION_BITS) * width + (fu >> FRACTION_BITS))]
-        pulled[c] = value
-        fu += du
-        fv += dv
+    part = pulled[first:last]
+    _sample(flat, width, (fu, fv), (du, dv), part)
     # Apart from the loop above so that the compiler vectorises it.
-    _replace_lethal(pulled[first:last], lethal_as)
+    _replace_lethal(part, lethal_as)
     return first, last
 
 
-@kernel
+@kernel(allocates=False)
+def _sample(flat: Cells, width: int, at: Any, step: Any, row: Cells) -> None:
+    fu, fv = at
+    du, dv = step
+    for c in range(row.size):
+        # An unsigned index avoids the check for negative ones.
+        row[c] = flat[np.uint64((fv >> FRACTION_BITS) * width + (fu >> FRACTION_BITS))]
+        fu += du
+        fv += dv
+
+
+@kernel(allocates=False)
 def _replace_lethal(row: Cells, lethal_as: np.int8) -> None:
     lethal = np.int8(LETHAL)
     for c in range(row.size):
         row[c] = lethal_as if row[c] >= lethal else row[c]
 
 
-@kernel
+@kernel(allocates=False)
 def _is_in(fu: int, fv: int, width: int, height: int) -> bool:
     return 0 <= fu < width * ONE and 0 <= fv < height * ONE
 
 
-@kernel
+@kernel(allocates=False)
 def has_lethal(row: Cells) -> bool:
-    highest = np.int8(UNKNOWN)
+    lethal = False  # vectorised
     for c in range(row.size):
-        highest = max(highest, row[c])
-    return bool(highest >= LETHAL)
+        lethal |= row[c] >= LETHAL
+    return lethal
 
 
-@kernel
+@kernel(allocates=False)
 def cell_at(transform: Affine, row: int, column: int) -> tuple[int, int]:
     """(row, column) of the outer cell that contains the centre of an inner cell."""
     a, b, u0, v0 = transform

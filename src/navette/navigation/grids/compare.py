@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.alignment import Affine, align, cell_at
+from navette.navigation.grids.alignment import Affine, align, cell_at, has_lethal
 from navette.navigation.grids.checks import at_least, grid_array
 from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
 from navette.navigation.grids.windows import CellWindow
@@ -90,10 +90,13 @@ def _unmatched(
     height, width = other.shape
     count = 0
     for r in range(window.first_row, window.last_row):
-        for c in range(window.first_column, window.last_column):
-            if grid[r, c] < LETHAL:
+        line = grid[r, window.first_column : window.last_column]
+        if not has_lethal(line):
+            continue
+        for k in range(line.size):
+            if line[k] < LETHAL:
                 continue
-            row, column = cell_at(other_T_grid, r, c)
+            row, column = cell_at(other_T_grid, r, window.first_column + k)
             if not (0 <= row < height and 0 <= column < width):
                 continue
             if other[row, column] >= least and not _lethal_near(other, row, column):

@@ -76,23 +76,24 @@ def merge(
         float(erase_within_m) / target_spec.resolution,
     )
     alignment = align(target_spec, source_spec)
-    _merge_kernel(grid, cells, alignment, rule, lethal_cells is None)
+    pulled = np.empty(grid.shape[1], np.int8)
+    _merge_kernel(grid, cells, alignment, rule, lethal_cells is None, pulled)
     if lethal_cells is not None:
         grid[lethal_cells[:, 0], lethal_cells[:, 1]] = LETHAL
 
 
-@kernel
+@kernel(allocates=False)
 def _merge_kernel(
     target: Cells,
     source: Cells,
     alignment: Alignment,
     rule: _MergeRule,
     pushes: bool,
+    pulled: Cells,
 ) -> None:
     # The lethal cells follow from points, or from the source's lethal cells.
     apart = alignment.pushes_lethal or not pushes
     lethal_as = np.int8(LETHAL - 1) if apart else np.int8(LETHAL)
-    pulled = np.empty(target.shape[1], np.int8)
     first_row, last_row = row_range(source, alignment, target.shape[0])
     for r in range(first_row, last_row):
         first, last = pull_row(source, alignment, r, lethal_as, pulled)
@@ -126,7 +127,8 @@ def _push_lethal(
 @kernel(allocates=False)
 def _overwrite_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
-        target[c] = pulled[c] if pulled[c] >= 0 else target[c]
+        old, new = target[c], pulled[c]  # read first: only then is this vectorised
+        target[c] = new if new >= 0 else old
 
 
 @kernel(allocates=False)
@@ -156,4 +158,5 @@ def _chord(
 @kernel(allocates=False)
 def _max_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
-        target[c] = pulled[c] if pulled[c] > target[c] else target[c]
+        old, new = target[c], pulled[c]
+        target[c] = new if new > old else old

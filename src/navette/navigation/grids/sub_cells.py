@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.spec import LETHAL, Cells, GridSpec, grid_frame
-from navette.navigation.grids.windows import CellWindow
+from navette.navigation.grids.spec import GridSpec, grid_frame
 
 SUB_CELLS = 8
 """Sub-cells along an edge of a cell; 64 bits in all."""
@@ -29,7 +28,6 @@ Points = NDArray[np.float64]
 NO_POINTS = np.empty((0, 2))
 
 _NO_CELL = np.iinfo(np.int64).min
-_PART = 64  # cells of a row that are searched at once
 
 
 def mark_points(masks: Masks, spec: GridSpec, points: Points) -> NDArray[np.int64]:
@@ -74,35 +72,6 @@ class CellMarks(NamedTuple):
             self, centers, grid_frame(spec), _circle(spec, radius_m)
         )
         return points
-
-
-def points_by_cell(
-    masks: Masks, spec: GridSpec, cells: NDArray[np.int64]
-) -> tuple[Points, NDArray[np.int64]]:
-    """Return the marked points (N, 2) of cells (M, 2), m, and the cell (N,) of each."""
-    of_each = masks[cells[:, 0], cells[:, 1]]
-    uv, which = _points_by_cell(of_each, np.ascontiguousarray(cells, np.int64))
-    return spec.origin.apply(uv * spec.resolution), which
-
-
-def marked_points(
-    masks: Masks, spec: GridSpec, cells: Cells, window: CellWindow
-) -> tuple[Points, NDArray[np.int64], NDArray[np.int64]]:
-    """Return the lethal cells with marked points in a window, and their points.
-
-    Args:
-        masks: (H, W).
-        spec: its geometry.
-        cells: (H, W) −1 unknown, 0 free … 100 lethal.
-        window: the cells to search.
-
-    Returns:
-        Points (N, 2) in the grid's frame, m, row by row; the index (N,) of the cell of
-        each; the cells (M, 2) row, column.
-    """
-    found = _lethal_marked(masks, cells, window)
-    points, which = points_by_cell(masks, spec, found)
-    return points, which, found
 
 
 def cell_points(
@@ -213,7 +182,7 @@ def _marked_or_circle(marks: Any, centers: Any, frame: Any, circle: Any) -> Any:
 
 
 @kernel
-def _points_by_cell(masks: Any, cells: Any) -> Any:
+def points_by_cell(masks: Any, cells: Any) -> Any:
     """Return the marked points (N, 2) u, v in cells, and the index of each one's."""
     count = 0
     for k in range(masks.size):
@@ -241,7 +210,7 @@ def _points_by_cell(masks: Any, cells: Any) -> Any:
 @kernel
 def _cell_points(masks: Any, cells: Any, frame: Any, circle: Any) -> Points:
     """Return the marked points, then a circle about each cell (M, 2) without one."""
-    marked, _ = _points_by_cell(masks, cells)
+    marked, _ = points_by_cell(masks, cells)
     empty = 0
     for k in range(masks.size):
         empty += masks[k] == 0
@@ -262,30 +231,3 @@ def _cell_points(masks: Any, cells: Any, frame: Any, circle: Any) -> Points:
             points[at, 0], points[at, 1] = x + circle[i, 0], y + circle[i, 1]
             at += 1
     return points
-
-
-def _lethal_marked(masks: Masks, cells: Cells, window: CellWindow) -> NDArray[np.int64]:
-    """Return the lethal cells (M, 2) of a window that have marked points."""
-    found: NDArray[np.int64] = _search_lethal(masks, cells, window)
-    return found
-
-
-@kernel
-def _search_lethal(masks: Any, cells: Any, window: CellWindow) -> Any:
-    found = np.empty((1024, 2), np.int64)
-    count = 0
-    for row in range(window.first_row, window.last_row):
-        for first in range(window.first_column, window.last_column, _PART):
-            line = cells[row, first : min(window.last_column, first + _PART)]
-            highest = line[0]
-            for k in range(line.size):  # vectorised: most parts have no lethal cell
-                highest = max(highest, line[k])
-            if highest < LETHAL:
-                continue
-            if count + _PART > found.shape[0]:
-                found = np.concatenate((found, np.empty_like(found)))
-            for k in range(line.size):
-                if line[k] >= LETHAL and masks[row, first + k] != 0:
-                    found[count, 0], found[count, 1] = row, first + k
-                    count += 1
-    return found[:count].copy()

@@ -1,14 +1,13 @@
 """Windows of a grid: the rows and columns of a part of its cells."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids.spec import UNKNOWN, GridSpec
-
-_STRIP = 256  # rows
+from navette.files.kernels import kernel
+from navette.navigation.grids.spec import UNKNOWN, GridFrame, GridSpec, grid_frame
 
 
 class CellWindow(NamedTuple):
@@ -29,20 +28,13 @@ class CellWindow(NamedTuple):
         cls, spec: GridSpec, points: NDArray[np.float64], margin: int = 0
     ) -> "CellWindow":
         """Return the cells that contain points (N, 2), m, and ``margin`` more."""
-        uv = spec.origin.inverse().apply(points) / spec.resolution
-        left, top = (math.floor(least) for least in uv.min(axis=0))
-        right, bottom = (math.floor(most) + 1 for most in uv.max(axis=0))
-        return cls(top, bottom, left, right).grown(margin, spec.shape)
-
-    @classmethod
-    def of(cls, mask: NDArray[np.bool_]) -> "CellWindow":
-        """Return the window around the true cells of a mask (H, W); may be empty."""
-        rows = np.flatnonzero(mask.any(axis=1))
-        if rows.size == 0:
-            return cls(0, 0, 0, 0)
-        first_row, last_row = int(rows[0]), int(rows[-1]) + 1
-        columns = np.flatnonzero(mask[first_row:last_row].any(axis=0))
-        return cls(first_row, last_row, int(columns[0]), int(columns[-1]) + 1)
+        left, right, top, bottom = _bounds(points, grid_frame(spec))
+        return cls(
+            math.floor(top),
+            math.floor(bottom) + 1,
+            math.floor(left),
+            math.floor(right) + 1,
+        ).grown(margin, spec.shape)
 
     @classmethod
     def of_cells(cls, cells: NDArray[np.int64]) -> "CellWindow":
@@ -56,11 +48,8 @@ class CellWindow(NamedTuple):
     @classmethod
     def of_known(cls, cells: NDArray[np.int8]) -> "CellWindow":
         """Return the smallest window of all cells (H, W) that are not unknown."""
-        window = NO_CELLS
-        for first in range(0, cells.shape[0], _STRIP):  # a small mask at a time
-            strip = cls.of(cells[first : first + _STRIP] != UNKNOWN)
-            window = window.union(strip.shifted(first, 0))
-        return window
+        window = cls(*_known_window(cells))
+        return NO_CELLS if window.is_empty else window
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -112,3 +101,45 @@ class CellWindow(NamedTuple):
 
 
 NO_CELLS = CellWindow(0, 0, 0, 0)
+
+
+@kernel(allocates=False)
+def _bounds(points: Any, frame: GridFrame) -> tuple[float, float, float, float]:
+    """Return the least and the largest u, then v, of points (N, 2), in cells."""
+    left = top = np.inf
+    right = bottom = -np.inf
+    for k in range(points.shape[0]):
+        dx, dy = points[k, 0] - frame.x, points[k, 1] - frame.y
+        u, v = frame.cos * dx + frame.sin * dy, frame.cos * dy - frame.sin * dx
+        left, right = min(left, u), max(right, u)
+        top, bottom = min(top, v), max(bottom, v)
+    edge = frame.resolution
+    return left / edge, right / edge, top / edge, bottom / edge
+
+
+@kernel(allocates=False)
+def _known_window(cells: Any) -> tuple[int, int, int, int]:
+    height, width = cells.shape
+    top, bottom, left, right = height, 0, width, 0
+    for row in range(height):
+        line = cells[row]
+        if not _has_known(line):
+            continue
+        top, bottom = min(top, row), row + 1
+        if _has_known(line[:left]):
+            left = 0
+            while line[left] == UNKNOWN:
+                left += 1
+        if _has_known(line[right:]):
+            right = width
+            while line[right - 1] == UNKNOWN:
+                right -= 1
+    return top, bottom, left, right
+
+
+@kernel(allocates=False)
+def _has_known(line: Any) -> bool:
+    known = False  # vectorised
+    for k in range(line.size):
+        known |= line[k] != UNKNOWN
+    return known

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec
+from navette.navigation.grids import CellWindow, GridSpec
 from navette.navigation.mapping.params import MapMemoryParams
 
 
@@ -24,7 +24,7 @@ def known_corners(
     cells: NDArray[np.int8], spec: GridSpec
 ) -> NDArray[np.float64] | None:
     """Return corners (4, 2), m, of the box around the known cells, if any."""
-    known = CellWindow.of(cells != UNKNOWN)
+    known = CellWindow.of_known(cells)
     if known.is_empty:
         return None
     u = np.array([known.first_column, known.last_column]) * spec.resolution

@@ -16,6 +16,7 @@ from navette.navigation.grids import (
     CellWindow,
     Changes,
     GridSpec,
+    MarkedCells,
     RowSpans,
     SparseGrid,
     SquareRegion,
@@ -23,7 +24,6 @@ from navette.navigation.grids import (
     cells_in_footprint,
     compare,
     mark_points,
-    marked_points,
     merge,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
@@ -31,13 +31,8 @@ from navette.navigation.mapping.marked_points import MarkedPoints
 from navette.navigation.mapping.methods import MAPPINGS
 from navette.navigation.mapping.own_mapping import own_mapping
 from navette.navigation.mapping.params import MapMemoryParams
-from navette.navigation.mapping.vanished import (
-    VanishedCells,
-    behind,
-    have_echo,
-    middles,
-    possible_directions,
-)
+from navette.navigation.mapping.scan_beams import ScanBeams
+from navette.navigation.mapping.vanished import VanishedCells
 
 # Beyond the body, obstacles that the sensors do not see can be touched in a turn.
 _BESIDE_M = 0.3
@@ -223,20 +218,17 @@ class MapMemory:
 
     def _window_of(self, costmap: PlacedCostmap) -> CellWindow:
         """Return the cells that fusing a costmap may change."""
-        spec, resolution = costmap.spec, self.spec.resolution
+        spec, base = costmap.spec, costmap.map_T_base
         width, height = spec.width * spec.resolution, spec.height * spec.resolution
         corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
         reach = 0.0 if self.footprint is None else self.footprint.circumscribed_radius
-        base, sensor = costmap.map_T_base, costmap.sensor
         body = [(base.x + s * reach, base.y + s * reach) for s in (-1.0, 1.0)]
-        points = np.concatenate([spec.origin.apply(corners), body, [sensor]])
-        if costmap.hits is not None and len(costmap.hits):
+        points = [spec.origin.apply(corners), (*body, costmap.sensor)]
+        if costmap.hits is not None:
             # Beams that end outside a costmap of the user's own pass cells there.
-            low, high = costmap.hits.min(axis=0), costmap.hits.max(axis=0)
-            points = np.concatenate([points, [low, high]])
-        return CellWindow.around(
-            self.spec, points, 2 + math.ceil(spec.resolution / resolution)
-        )
+            points.append(costmap.hits)
+        margin = 2 + math.ceil(spec.resolution / self.spec.resolution)
+        return CellWindow.around(self.spec, np.concatenate(points), margin)
 
     @property
     def vanishing(self) -> int:
@@ -261,7 +253,7 @@ class MapMemory:
         A lethal cell without such a point was lethal in a loaded map, or in a costmap
         without points.
         """
-        return self._marked.points(self._masks.cells, self.spec, self._cells)
+        return self._update_marked().points
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
         """Count obstacle cells near the robot that contradict the map."""
@@ -310,7 +302,7 @@ class MapMemory:
             return
         pad = (growth.rows, growth.columns)
         self._changed = None
-        self._marked.grow(growth.rows[0])
+        self._marked.grow(growth.rows[0], growth.columns[0])
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
         if self._base is not None:
@@ -328,26 +320,16 @@ class MapMemory:
         """
         if costmap.hits is None or self.params.fusion != "overwrite":
             return np.empty((0, 2), np.int64)
-        points, which, lethal = marked_points(
-            self._masks.cells, self.spec, self._cells, window
+        beams = ScanBeams.of(costmap.hits, costmap.sensor, costmap.cells, costmap.spec)
+        gone, kept = self._vanished.update(
+            self._update_marked(), window, beams, self.spec.resolution
         )
-        middle = middles(points, which, len(lethal))
-        measured = have_echo(middle, costmap.hits)
-        self._vanished.forget(lethal[measured])
-        lethal, middle = lethal[~measured], middle[~measured]
-        possible = possible_directions(
-            middle,
-            costmap.hits,
-            costmap.sensor,
-            self.spec.resolution,
-            _is_free(costmap, middle)
-            & _is_free(costmap, behind(middle, costmap.sensor)),
-        )
-        gone = self._vanished.update(lethal, possible)
         self._cells[gone[:, 0], gone[:, 1]] = FREE
         self._masks.cells[gone[:, 0], gone[:, 1]] = 0
-        kept = self._cells[lethal[:, 0], lethal[:, 1]] >= LETHAL
-        return np.asarray(lethal[kept])
+        return kept
+
+    def _update_marked(self) -> MarkedCells:
+        return self._marked.update(self._masks.cells, self.spec, self._cells)
 
     def _mark(self, hits: NDArray[np.float64] | None) -> NDArray[np.int64] | None:
         """Store where beams ended; return the cells (M, 2) with these points."""
@@ -404,18 +386,6 @@ class MapMemory:
         there_now = self._cells[rows, columns]
         clear = (there_now == UNKNOWN) | (there_now == LETHAL)
         self._cells[rows[clear], columns[clear]] = FREE
-
-
-def _is_free(costmap: PlacedCostmap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return (N,) whether points (N, 2), map frame, lie in cells that beams crossed."""
-    uv = costmap.spec.origin.inverse().apply(points) / costmap.spec.resolution
-    column, row = np.floor(uv).astype(np.int64).T
-    inside = (row >= 0) & (row < costmap.spec.height)
-    inside &= (column >= 0) & (column < costmap.spec.width)
-    free = np.zeros(len(points), np.bool_)
-    values = costmap.cells[row[inside], column[inside]]
-    free[inside] = (values >= FREE) & (values < LETHAL)
-    return free
 
 
 def _log_odds(probability: float) -> float:

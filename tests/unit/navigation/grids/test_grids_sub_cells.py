@@ -4,6 +4,8 @@ import numpy as np
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
+    LETHAL,
+    CellWindow,
     GridSpec,
     HitPoints,
     cell_points,
@@ -11,8 +13,8 @@ from navette.navigation.grids import (
     make_obstacles,
     make_outline,
     mark_points,
+    marked_cells,
     point_radius,
-    points_by_cell,
     points_to_message,
 )
 
@@ -32,10 +34,22 @@ def some_points(count: int) -> np.ndarray:
 def test_points_come_back_to_half_a_sub_cell() -> None:
     points = some_points(40)
     masks, cells = marked(points)
-    back = points_by_cell(masks, SPEC, cells)[0]
+    lethal = np.zeros(SPEC.shape, np.int8)
+    lethal[tuple(cells.T)] = LETHAL
+    found = marked_cells(masks, SPEC, lethal, CellWindow.whole(SPEC.shape))
+    back = found.points
     gaps = np.hypot(*(points[:, None] - back[None]).transpose(2, 0, 1))
     assert gaps.min(axis=1).max() <= 2**0.5 * point_radius(0.1) + 1e-9
     assert len(cells) == len({SPEC.cell_of(x, y) for x, y in points.tolist()})
+    assert (found.cells == cells).all()
+    assert found.counts.sum() == len(back)
+    ends = np.cumsum(found.counts)
+    for cell, middle, end, count in zip(
+        cells, found.middles, ends, found.counts, strict=True
+    ):
+        its_own = back[end - count : end]
+        np.testing.assert_allclose(middle, its_own.mean(axis=0))
+        assert {SPEC.cell_of(x, y) for x, y in its_own.tolist()} == {tuple(cell)}
 
 
 def test_points_outside_the_grid_are_ignored() -> None:

@@ -1,3 +1,4 @@
+import dataclasses
 import math
 
 import numpy as np
@@ -5,7 +6,7 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec, placed
+from navette.navigation.grids import CellWindow, GridSpec, marked_cells, placed
 from navette.navigation.mapping import MapMemory, MapMemoryParams, PlacedCostmap
 
 SMALL = {"size_m": 10.0, "growth_m": 2.0, "max_size_m": 20.0}
@@ -240,3 +241,21 @@ def test_clearing_keeps_what_stands_beside_the_body_in_a_blind_spot(
     assert before < 50
     assert far == -1
     assert memory.hit_points() == pytest.approx(hits[:1], abs=0.007)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_marked_cells_are_those_of_the_whole_map_after_every_scan(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    mem = memory()
+    for _ in range(20):
+        pose = Pose2(*rng.uniform((-6, -6, -3), (6, 6, 3)))  # some scans enlarge it
+        cells = rng.choice(
+            np.array([-1, 0, 100], np.int8), SPEC.shape, p=[0.2, 0.75, 0.05]
+        )
+        seen = costmap(cells, pose)
+        hits = seen.spec.centers_of(np.argwhere(cells == 100))
+        mem.fuse(dataclasses.replace(seen, hits=hits))
+        if rng.random() < 0.7:
+            whole = CellWindow.whole(mem.spec.shape)
+            expected = marked_cells(mem._masks.cells, mem.spec, mem.cells, whole)
+            np.testing.assert_allclose(mem.hit_points(), expected.points, atol=1e-9)

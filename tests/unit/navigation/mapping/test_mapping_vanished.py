@@ -6,9 +6,14 @@ import pytest
 from navette.geometry import Pose2
 from navette.navigation.costmap import CostmapParams, PlanarScan, ScanCostmap
 from navette.navigation.grids import placed
+from navette.navigation.grids.sub_cells import SUB_CELLS
 from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
 from navette.navigation.mapping.params import MapMemoryParams
-from navette.navigation.mapping.vanished import have_echo, possible_directions
+from navette.navigation.mapping.scan_beams import (
+    ScanBeams,
+    has_echo,
+    possible_directions,
+)
 
 BEAMS = np.linspace(-np.pi, np.pi, 720, endpoint=False)
 COSTMAP = ScanCostmap(CostmapParams(resolution_m=0.05, size_m=22.0))
@@ -78,9 +83,16 @@ def test_thin_posts_stay_at_every_range() -> None:
 
 def directions(points: list[tuple[float, float]], hits: np.ndarray) -> list[int]:
     """Return in how many of 32 directions from each point a post may be."""
-    crossed = np.ones(len(points), np.bool_)
-    found = possible_directions(np.array(points), hits, (0.0, 0.0), 0.05, crossed)
+    edge_m = 0.05 / SUB_CELLS
+    beams = scan_of(hits)
+    found = [possible_directions(x, y, edge_m, beams) for x, y in points]
     return [int(bits).bit_count() for bits in found]
+
+
+def scan_of(hits: np.ndarray) -> ScanBeams:
+    """Return the beams of a scan from the origin in a costmap without obstacles."""
+    spec = COSTMAP.spec
+    return ScanBeams.of(hits, (0.0, 0.0), np.zeros(spec.shape, np.int8), spec)
 
 
 def fan(*angles: float, range_m: float = 5.0) -> np.ndarray:
@@ -109,8 +121,9 @@ def test_beams_without_an_echo_are_between_the_others() -> None:
 
 
 def test_an_echo_beside_another_post_does_not_free_its_cell() -> None:
-    near = have_echo(np.array([(2.0, 0.0), (2.0, 0.2)]), np.array([(2.0, 0.28)]))
-    assert near.tolist() == [False, True]
+    beams = scan_of(np.array([(2.0, 0.28)]))
+    assert not has_echo(2.0, 0.0, beams)
+    assert has_echo(2.0, 0.2, beams)
 
 
 def test_a_post_at_the_end_of_the_range_is_kept_without_an_echo() -> None:
