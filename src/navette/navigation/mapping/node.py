@@ -5,10 +5,14 @@ costmap. Costmaps are placed with the pose interpolated at their stamp; without 
 or transforms they are dropped and the map does not change.
 """
 
+import dataclasses
 import math
 import pathlib
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from navette.errors import FileFormatError, InvalidInputError, InvalidValueError
 from navette.geometry import Footprint, Pose2
@@ -59,6 +63,15 @@ NEW_RUN_NS = 1_000_000_000
 # radius: errors of tracking and cells that are partly covered.
 _MOVING_TIMEOUT_S = 0.5
 _MOVING_MARGIN_M = 0.25
+
+
+class _Arrival(NamedTuple):
+    """A placed costmap without its hits, and what they are placed with."""
+
+    costmap: PlacedCostmap
+    map_T_sensor: Pose2
+    moving: NDArray[np.float64]
+    """(M, 5), of :class:`~navette.navigation.grids.MovingDiscs`, at the same stamp"""
 
 
 class MapMemoryNode(StageNode):
@@ -128,6 +141,10 @@ class MapMemoryNode(StageNode):
     def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._tracker = self._new_tracker()
+        trajectory = self.resolve_topic_name(topics.TRAJECTORY.name)
+        self._trajectories = next(
+            each for each in self.subscriptions if each.topic_name == trajectory
+        )
         self._start()
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
@@ -143,10 +160,7 @@ class MapMemoryNode(StageNode):
         self._tracker.update(msg)
         if self._tracker.jumps != jumps:
             self._relocate()
-        twist = msg.twist.twist
-        self._motion = BodyMotion(
-            twist.angular.z, twist.linear.z, _tilt_of(msg.pose.pose.orientation)
-        )
+        self._odometry = msg
         if self._waiting:
             self._place_waiting()
 
@@ -189,8 +203,9 @@ class MapMemoryNode(StageNode):
 
     def on_timer(self) -> None:
         """Fuse the newest costmap if the robot moved far enough."""
-        if self._newest is not None and self._gate.on_timer(self._newest, self._memory):
-            self._fuse(self._newest)
+        newest = self._newest
+        if newest and self._gate.on_timer(newest.costmap, self._memory):
+            self._fuse(newest)
         elif self._whole_ns < self._map_ns and self._subscribers() > self._served:
             self._publish_whole()  # to subscribers that came since
 
@@ -226,7 +241,7 @@ class MapMemoryNode(StageNode):
         self._restart()
 
     def _restart(self) -> None:
-        self._motion = STEADY
+        self._odometry: Odometry | None = None  # newest
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._memory.reset()
         self._gate.reset()
@@ -234,7 +249,7 @@ class MapMemoryNode(StageNode):
             round(self.params.pose_wait_s * 1e9)
         )
         self._hits = HitPoints()
-        self._newest: PlacedCostmap | None = None
+        self._newest: _Arrival | None = None
         self._keyframes = Keyframes()
         self._last_stamp_ns = 0
         self._published: OccupancyGrid | None = None  # None: not built yet
@@ -250,15 +265,21 @@ class MapMemoryNode(StageNode):
         if self._is_corrected:
             return
         newest, self._newest = self._newest, None
-        pose = None if newest is None else self._tracker.pose_at(newest.stamp_ns)
-        if newest is not None and pose is not None:
-            self._newest = replaced(newest, pose)
-        self._rebuild([] if self._newest is None else [self._newest])
+        pose = newest and self._tracker.pose_at(newest.costmap.stamp_ns)
+        if newest is None or pose is None:
+            self._rebuild([])
+            return
+        before = newest.costmap.map_T_base
+        self._newest = newest._replace(
+            costmap=replaced(newest.costmap, pose),
+            map_T_sensor=pose @ before.inverse() @ newest.map_T_sensor,
+        )
+        self._rebuild([replaced(self._with_hits(newest), pose)])
 
     @property
     def _is_corrected(self) -> bool:
         """Whether a trajectory is published, so that costmaps are kept for it."""
-        return self.count_publishers(topics.TRAJECTORY.name) > 0
+        return self._trajectories.get_publisher_count() > 0
 
     def _rebuild(self, costmaps: Sequence[PlacedCostmap]) -> None:
         self._memory.reset()
@@ -275,11 +296,11 @@ class MapMemoryNode(StageNode):
             at = f"stamp {lost.stamp_ns / 1e9:.3f} s"
             self._drop("no_pose", f"{lost.reason} ({at})")
         for each in ready:
-            costmap = self._placed(each)
-            if costmap is not None:
-                self._on_placed(costmap)
+            arrival = self._placed(each)
+            if arrival is not None:
+                self._on_placed(arrival)
 
-    def _placed(self, ready: Ready[OccupancyGrid]) -> PlacedCostmap | None:
+    def _placed(self, ready: Ready[OccupancyGrid]) -> _Arrival | None:
         frame_id = ready.item.header.frame_id
         base_T_sensor = self._tracker.transform_to_base(frame_id)
         if base_T_sensor is None:
@@ -291,38 +312,51 @@ class MapMemoryNode(StageNode):
         except InvalidValueError as error:
             self._drop("out_of_range", str(error))
             return None
-        hits = self._hits.at(ready.stamp_ns)
-        points = None if hits is None else map_T_sensor.apply(hits)
         moving = self._moving.at(ready.stamp_ns, _MOVING_TIMEOUT_S)
-        if points is not None and len(moving):
-            points = points[~inside_discs(points, moving, _MOVING_MARGIN_M)]
-        return PlacedCostmap(
+        costmap = PlacedCostmap(
             without_discs(cells, there, moving, _MOVING_MARGIN_M),
             there,
             (map_T_sensor.x, map_T_sensor.y),
             ready.map_T_base,
             ready.stamp_ns,
-            self._motion,
-            points,
+            self._motion(),
         )
+        return _Arrival(costmap, map_T_sensor, moving)
 
-    def _on_placed(self, costmap: PlacedCostmap) -> None:
-        self._newest = costmap
+    def _motion(self) -> BodyMotion:
+        if self._odometry is None:
+            return STEADY
+        twist, pose = self._odometry.twist.twist, self._odometry.pose.pose
+        return BodyMotion(twist.angular.z, twist.linear.z, _tilt_of(pose.orientation))
+
+    def _on_placed(self, arrival: _Arrival) -> None:
+        self._newest, costmap = arrival, arrival.costmap
         if self._is_corrected:
             odom_T_base = self._tracker.in_odom(costmap.map_T_base)
             self._keyframes.trace(costmap.stamp_ns, odom_T_base)
         if self._gate.on_arrival(costmap, self._memory, self._now_ns()):
-            self._fuse(costmap)
+            self._fuse(arrival)
 
-    def _fuse(self, costmap: PlacedCostmap) -> None:
+    def _fuse(self, arrival: _Arrival) -> None:
+        costmap = self._with_hits(arrival)
         if not self._memory.fuse(costmap):
             return
-        self._gate.fused(costmap, self._now_ns())
+        self._gate.fused(arrival.costmap, self._now_ns())
         if self._is_corrected:
             odom_T_base = self._tracker.in_odom(costmap.map_T_base)
             self._keyframes.add(costmap, odom_T_base)
         self._last_stamp_ns = costmap.stamp_ns
         self._publish_map(costmap.stamp_ns)
+
+    def _with_hits(self, arrival: _Arrival) -> PlacedCostmap:
+        """Return the costmap with the points of its stamp: most are not fused."""
+        hits = self._hits.at(arrival.costmap.stamp_ns)
+        if hits is None:
+            return arrival.costmap
+        points = arrival.map_T_sensor.apply(hits)
+        if len(arrival.moving):
+            points = points[~inside_discs(points, arrival.moving, _MOVING_MARGIN_M)]
+        return dataclasses.replace(arrival.costmap, hits=points)
 
     def _publish_map(self, stamp_ns: int) -> None:
         memory, frame_id = self._memory, self.params.map_frame
@@ -416,10 +450,10 @@ class MapMemoryNode(StageNode):
         if newest is None:
             self._memory.clear(region)
         else:
-            beside = self._memory.points_in_blind_spot(newest)
+            beside = self._memory.points_in_blind_spot(newest.costmap)
             self._memory.clear(region)
-            if self._memory.fuse(newest):
-                self._gate.fused(newest, self._now_ns())
+            if self._memory.fuse(self._with_hits(newest)):
+                self._gate.fused(newest.costmap, self._now_ns())
             self._memory.restore(beside)
         self._publish_map(self._now_ns())
 
