@@ -203,7 +203,8 @@ class DetourPlanner:
         grid, params = self.grid, self.params
         world = lattice.LatticeWorld(
             distances=grid.distances,
-            factor=grid.factor(),
+            cost=grid.cost,
+            factors=grid.factors(),
             guide=self._guide(target, begin),
             spec=grid.spec,
             body=self.body.points,

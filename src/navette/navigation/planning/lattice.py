@@ -42,7 +42,7 @@ from navette.navigation.planning.lattice_kernels import (
     grow,
 )
 from navette.navigation.planning.lattice_motions import Motions
-from navette.navigation.planning.traversal import STRAIGHT
+from navette.navigation.planning.traversal import STRAIGHT, with_rim
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,8 @@ class LatticeWorld:
 
     Attributes:
         distances: (H, W) to the nearest obstacle.
-        factor: (H, W) float32, cost of a metre in each cell (1 = free).
+        cost: (H, W) of the cells.
+        factors: (256,) float32, cost of a metre by that cost (1 = free).
         guide: (H, W) cost to go to the goal, units; see :mod:`.dijkstra`.
         spec: geometry of these grids.
         body: (K, 3) points and disc radii of the body, base frame.
@@ -64,7 +65,8 @@ class LatticeWorld:
     """
 
     distances: DistanceLevels
-    factor: NDArray[np.float32]
+    cost: NDArray[np.uint8]
+    factors: NDArray[np.float32]
     guide: Field
     spec: GridSpec
     body: NDArray[np.float64]
@@ -144,7 +146,8 @@ def _scene(world: LatticeWorld) -> LatticeScene:
     unseen_m = level_metres(world.spec.resolution, 2 * world.outline.radius_m)
     return LatticeScene(
         DistanceGrid(world.distances, frame, float(world.outside_m)),
-        world.factor,
+        with_rim(world.cost),
+        world.factors,
         np.ascontiguousarray(world.guide),
         make_body(world.body),
         world.obstacles,

@@ -49,10 +49,14 @@ HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
 
 
 class LatticeScene(NamedTuple):
-    """Map and body for the kernels; see :class:`.lattice.LatticeWorld`."""
+    """Map and body for the kernels; see :class:`.lattice.LatticeWorld`.
+
+    ``rimmed_cost`` has a rim: contiguous, so that the kernel has one type.
+    """
 
     grid: DistanceGrid
-    factor: NDArray[np.float32]
+    rimmed_cost: NDArray[np.uint8]
+    factors: NDArray[np.float32]
     guide: NDArray[np.int64]
     body: Body
     obstacles: ObstacleGrid
@@ -290,7 +294,8 @@ def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     if not (0.0 <= u < width and 0.0 <= v < height):
         return NOWHERE, -1.0
     row, column = int(v), int(u)
-    ahead, factor = scene.guide[row, column], float(scene.factor[row, column])
+    ahead = scene.guide[row, column]
+    factor = float(scene.factors[scene.rimmed_cost[row + 1, column + 1]])
     u, v = u - 0.5, v - 0.5
     if not (0.0 <= u < width - 1 and 0.0 <= v < height - 1):
         return ahead, factor

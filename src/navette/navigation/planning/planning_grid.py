@@ -152,9 +152,9 @@ class PlanningGrid:
         """Cost of entering a cell by its cost."""
         return self.costs.table
 
-    def factor(self) -> NDArray[np.float32]:
-        """Return (H, W) the cost of a metre in each cell; closed: the highest."""
-        cost = np.minimum(self.cost, MAX_PASSABLE_COST).astype(np.float32)
+    def factors(self) -> NDArray[np.float32]:
+        """Return (256,) the cost of a metre by the cell's cost; closed: the highest."""
+        cost = np.minimum(np.arange(256), MAX_PASSABLE_COST).astype(np.float32)
         return 1 + np.float32(self.table.weight / MAX_PASSABLE_COST) * cost
 
     def factor_at(

@@ -47,7 +47,8 @@ def plan(
     grid = open_at(grid, spec.cell_of(start.x, start.y), body)
     world = LatticeWorld(
         distances=grid.distances,
-        factor=grid.factor(),
+        cost=grid.cost,
+        factors=grid.factors(),
         guide=cost_to_go(
             grid.cost, [(spec.cell_of(goal.x, goal.y), 0)], table=grid.table
         ),
@@ -131,7 +132,8 @@ def test_start_outside_is_refused() -> None:
     guide = np.zeros(spec.shape, np.int64)
     world = LatticeWorld(
         nothing,
-        nothing,
+        np.zeros(spec.shape, np.uint8),
+        np.ones(256, np.float32),
         guide,
         spec,
         np.zeros((1, 3)),
