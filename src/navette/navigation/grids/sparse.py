@@ -19,22 +19,30 @@ _STRIP = 256  # rows that are copied before their memory is returned
 _MOST_ROOM = 2000  # cells on each side of a grid into which it grows without a copy
 
 
-def sparse_zeros(shape: tuple[int, ...], dtype: type[Scalar]) -> NDArray[Scalar]:
+def sparse_zeros(
+    shape: tuple[int, ...], dtype: type[Scalar], *, large_bytes: int = _LARGE_BYTES
+) -> NDArray[Scalar]:
     """Return zeros, in small pages if there are many.
 
     NumPy requests pages of 2 MB for large arrays, so that a narrow band of writes
     through a map occupies all of it.
+
+    Args:
+        shape: of the array.
+        dtype: of its values.
+        large_bytes: size from which small pages are used. NumPy may write the zeros of
+            up to 32 MB, which takes longer than to use a small part of them.
     """
-    return _zeros(shape, dtype)[0]
+    return _zeros(shape, dtype, large_bytes)[0]
 
 
 def _zeros(
-    shape: tuple[int, ...], dtype: type[Scalar]
+    shape: tuple[int, ...], dtype: type[Scalar], large_bytes: int = _LARGE_BYTES
 ) -> tuple[NDArray[Scalar], mmap.mmap | None]:
     """Return :func:`sparse_zeros`, and their memory if it is not NumPy's."""
     size = math.prod(shape)
     length = size * np.dtype(dtype).itemsize
-    if length < _LARGE_BYTES:
+    if length < large_bytes:
         return np.zeros(shape, dtype), None
     memory = mmap.mmap(-1, length)
     return np.frombuffer(memory, dtype, size).reshape(shape), memory

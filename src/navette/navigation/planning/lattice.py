@@ -27,6 +27,7 @@ from navette.navigation.grids import (
     level_metres,
     make_body,
     make_obstacles,
+    sparse_zeros,
 )
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
@@ -43,6 +44,8 @@ from navette.navigation.planning.lattice_kernels import (
 )
 from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.traversal import STRAIGHT, with_rim
+
+_LARGE_BYTES = 1 << 20  # a search reaches few bins of a map
 
 
 @dataclass(frozen=True)
@@ -180,10 +183,11 @@ def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
     bins_wide = int(spec.width / bin_cells) + 1
     bins_high = int(spec.height / bin_cells) + 1
     room = len(motions.moves) * max_expansions + 1
+    bins = bins_high * bins_wide * motions.headings
     return Tree(
         np.empty((room, 2), np.float64),
         np.empty((room, 5), np.int32),
-        np.zeros(bins_high * bins_wide * motions.headings, np.int32),
+        sparse_zeros((bins,), np.int32, large_bytes=_LARGE_BYTES),
         bin_cells,
         bins_wide,
         BucketQueue.empty(BUCKETS, SHIFT),
