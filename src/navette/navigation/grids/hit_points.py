@@ -1,6 +1,7 @@
 """Points at which beams ended, as messages beside the grid of the same stamp."""
 
 import functools
+from operator import is_
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,14 +70,12 @@ def _row_type(x: int, y: int, step: int) -> np.dtype[np.void]:
 
 def _checked_offsets(msg: PointCloud2) -> tuple[int, int]:
     """Return the offsets of x and y in a point, bytes."""
-    offsets = {
-        field.name: field.offset
-        for field in msg.fields
-        if field.datatype == PointField.FLOAT32
-    }
+    fields = msg.fields
+    is_own = len(fields) == len(_FIELDS) and all(map(is_, fields, _FIELDS))
+    offsets = _OFFSETS if is_own else _float_offsets(fields)
     count, step = msg.width * msg.height, msg.point_step
     size = len(msg.data)
-    x, y = (offsets.get(name, step) for name in "xy")
+    x, y = offsets.get("x", step), offsets.get("y", step)
     if max(x, y) + _FIELD_BYTES > step or size != count * step or msg.is_bigendian:
         raise InvalidValueError(
             f"point cloud of {msg.width} x {msg.height} points with fields "
@@ -84,6 +83,15 @@ def _checked_offsets(msg: PointCloud2) -> tuple[int, int]:
             f"little-endian, in {step} bytes a point"
         )
     return x, y
+
+
+def _float_offsets(fields: list[PointField]) -> dict[str, int]:
+    return {
+        each.name: each.offset for each in fields if each.datatype == PointField.FLOAT32
+    }
+
+
+_OFFSETS = _float_offsets(_FIELDS)
 
 
 class HitPoints:

@@ -1,9 +1,11 @@
 """Progress of the robot, measured along its path."""
 
 import math
+from typing import Any
 
 import numpy as np
 
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.planning.path_shape import Poses, lengths, turns
 
@@ -23,10 +25,12 @@ class PathProgress:
     """
 
     def __init__(self, poses: Poses) -> None:
-        self.poses = poses
+        self.poses = np.ascontiguousarray(poses)
         self._metres = np.concatenate([[0.0], np.cumsum(lengths(poses))])
         spun = np.concatenate([[0.0], np.cumsum(turns(poses))])
         self._measure = self._metres + _METRES_PER_RADIAN * spun
+        x, y, yaw = poses[-1].tolist()
+        self.end = Pose2(x, y, yaw)
         self.index = 0
         self.off_path_m = 0.0
 
@@ -37,13 +41,8 @@ class PathProgress:
                 self._measure, self._measure[self.index] + _AHEAD_M, "right"
             )
         )
-        window = self.poses[self.index : stop]
-        away = np.hypot(window[:, 0] - robot.x, window[:, 1] - robot.y)
-        error = np.remainder(window[:, 2] - robot.yaw + np.pi, 2 * np.pi) - np.pi
-        # The first of equally near poses, so that a turn in place is not skipped.
-        best = int(np.argmin(away + _METRES_PER_RADIAN * np.abs(error)))
+        best, self.off_path_m = _nearest(self.poses[self.index : stop], *robot)
         self.index += best
-        self.off_path_m = float(away[best])
 
     @property
     def covered(self) -> float:
@@ -60,12 +59,22 @@ class PathProgress:
         """The path from the robot's pose to the end."""
         return self.poses[self.index :]
 
-    @property
-    def end(self) -> Pose2:
-        """The last pose."""
-        x, y, yaw = self.poses[-1].tolist()
-        return Pose2(x, y, yaw)
-
     def distance_to_end(self, robot: Pose2) -> float:
         """Return the straight-line distance (m) from the robot to the end."""
         return math.dist((robot.x, robot.y), (self.end.x, self.end.y))
+
+
+@kernel(signature="Tuple((int64, float64))(float64[:, ::1], float64, float64, float64)")
+def _nearest(poses: Any, x: float, y: float, yaw: float) -> tuple[int, float]:
+    """Return the index of the pose (N, 3) nearest to a pose, and its distance in m.
+
+    The first of equally near ones, so that a turn in place is not skipped.
+    """
+    best, least, off_m = 0, np.inf, 0.0
+    for k in range(poses.shape[0]):
+        away = np.hypot(poses[k, 0] - x, poses[k, 1] - y)
+        error = (poses[k, 2] - yaw + np.pi) % (2 * np.pi) - np.pi
+        measure = away + _METRES_PER_RADIAN * abs(error)
+        if measure < least:
+            best, least, off_m = k, measure, away
+    return best, off_m
