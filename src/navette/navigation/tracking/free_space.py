@@ -44,6 +44,33 @@ class PlacedScan(NamedTuple):
     stamp_ns: int
 
 
+@kernel(
+    signature="Tuple((boolean[::1], float64[::1], float64[:, ::1]))(float32[::1],"
+    " float64[:, ::1], float64, float64)"
+)
+def returns(
+    ranges: NDArray[np.float32], directions: Points, least: float, most: float
+) -> tuple[Flags, NDArray[np.float64], Points]:
+    """Return which beams (N,) have a return, their lengths (N,), and the points (N, 2).
+
+    Of the others length and point are 0. All in the sensor's frame, m.
+
+    Args:
+        ranges: (N,) float32, m.
+        directions: (N, 2) unit vectors of the beams.
+        least, most: range of the returns, exclusive, m.
+    """
+    count = ranges.size
+    valid, away = np.empty(count, np.bool_), np.empty(count)
+    points = np.empty((count, 2))
+    for i in range(count):
+        valid[i] = least < ranges[i] < most  # not if it is not a number
+        away[i] = ranges[i] if valid[i] else 0.0
+        points[i, 0] = directions[i, 0] * away[i]
+        points[i, 1] = directions[i, 1] * away[i]
+    return valid, away, points
+
+
 def passed_by(points: Points, valid: Flags, scan: PlacedScan, margin_m: float) -> Flags:
     """Return (M,) which of the valid points (M, 2), map, the scan's beams passed.
 

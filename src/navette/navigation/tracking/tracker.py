@@ -18,7 +18,7 @@ from navette.navigation.tracking.clusters import (
     is_whole,
     segment,
 )
-from navette.navigation.tracking.free_space import PlacedScan, passed_by
+from navette.navigation.tracking.free_space import PlacedScan, passed_by, returns
 from navette.navigation.tracking.params import TrackingParams
 from navette.navigation.tracking.tracks import Track, TrackedObstacle, associate
 
@@ -93,14 +93,12 @@ class MovingObstacles:
         if beams != self._beams:
             self._beams, self._directions = beams, beam_directions(*beams)
             self._past.clear()
-        away = scan.ranges.astype(np.float64)
+        ranges = np.ascontiguousarray(scan.ranges, np.float32)
         reach = min(scan.range_max, self.params.range_m)
-        with np.errstate(invalid="ignore"):
-            valid = (away > scan.range_min) & (away < reach)
-        away[~valid] = 0.0
-        points = map_T_sensor.apply(self._directions * away[:, None])
+        valid, away, arms = returns(ranges, self._directions, scan.range_min, reach)
+        points = map_T_sensor.apply(arms)
         placed = PlacedScan(
-            np.ascontiguousarray(scan.ranges, np.float32),
+            ranges,
             np.ascontiguousarray(points),
             valid,
             *map_T_sensor,
