@@ -301,7 +301,11 @@ def _near_obstacles(
     per_metre = F(1.0 / field.resolution)
     left, bottom = F(field.x / field.resolution), F(field.y / field.resolution)
     height, width = field.distance_m.shape
-    needed = F(enough_m + body.reach_m + 0.5 * field.resolution)
+    # The clearance is measured from the cell of a point of the body, and the cell of the
+    # robot is that far from it.
+    between_cells = 1.5 * field.resolution
+    half_cell = max(field.half_cell_m, 0.5 * field.resolution)
+    needed = F(enough_m + body.reach_m + half_cell + between_cells)
     x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
     found = 0
     for i in range(x.size):
