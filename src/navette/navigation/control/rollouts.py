@@ -181,9 +181,9 @@ def _lack_on_path(
     """Return (N,) the squared lack of clearance (m²) at each pose of the path."""
     count = path.poses.shape[1]
     near = np.empty((5, count), np.float32)
-    index = np.empty(count, np.int32)
+    index, cells = np.empty(count, np.int32), np.empty(count, np.int32)
     lack = np.zeros(count, np.float32)
-    found = _near_obstacles(path.poses, field, body, enough_m, near, index)
+    found = _near_obstacles(path.poses, field, body, enough_m, near, index, cells)
     if found > 0:
         _clearances(field, body, enough_m, near, found, True)
         for i in range(found):
@@ -217,9 +217,9 @@ def _chunk_costs(
         speed[row] = start[1 + row]
     steering = CURVATURE if drive == ACKERMANN else TURN_RATE
     before, apart = np.empty(n, np.float32), np.empty(n, np.float32)
-    at, from_ = np.zeros(n, np.int32), np.empty(n, np.int32)
+    at = np.zeros(n, np.int32)
     near = np.empty((5, n), np.float32)
-    index = np.empty(n, np.int32)
+    index, cells = np.empty(n, np.int32), np.empty(n, np.int32)
     is_tight: Any = _largest(on_path) > (weights.clearance_m - np.float32(TIGHT_M)) ** 2
     costs[:] = 0.0
     for t in range(steps):
@@ -234,8 +234,9 @@ def _chunk_costs(
             advance_omni(limits, step_s, speeds, turns, rates, speed)
         _effort_costs(before, speed[steering], weights.effort, costs)
         move(pose, speed, step_s)
-        _nearest(path, pose, from_, at, apart)
-        found = _near_obstacles(pose, field, body, weights.clearance_m, near, index)
+        _nearest(path, pose, at, apart)
+        found = _near_obstacles(pose, field, body, weights.clearance_m, near, index,
+                                cells)  # fmt: skip
         if found > 0:
             _clearances(field, body, weights.clearance_m, near, found, is_tight)
             earlier: Any = np.float32((1.0 - 0.5 * t / steps) / steps)
@@ -292,35 +293,51 @@ def _near_obstacles(
     enough_m: float,
     near: Array32,
     index: Indices,
+    cells: Indices,
 ) -> int:
     """Collect the samples whose clearance may be less than enough; return how many.
 
-    Rows 0-3 of ``near`` get u, v (cells), cosine and sine (cells per metre).
+    Rows 0-3 of ``near`` get u, v (cells), cosine and sine (cells per metre), ``index``
+    the samples; ``cells`` is overwritten.
     """
     F = np.float32
     per_metre = F(1.0 / field.resolution)
     left, bottom = F(field.x / field.resolution), F(field.y / field.resolution)
-    height, width = field.distance_m.shape
-    # The clearance is measured from the cell of a point of the body, and the cell of the
-    # robot is that far from it.
-    between_cells = 1.5 * field.resolution
     half_cell = max(field.half_cell_m, 0.5 * field.resolution)
-    needed = F(enough_m + body.reach_m + half_cell + between_cells)
+    # Between the centres of two cells it is up to √2 cells more than between points.
+    needed = F(enough_m + body.reach_m + half_cell + 1.5 * field.resolution)
     x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
+    _cells_of(field.distance_m.shape, x, y, per_metre, left, bottom, cells)
+    flat = field.distance_m.reshape(-1)
     found = 0
+    for i in range(x.size):  # without a branch, as no processor could predict it
+        index[found] = i
+        found += flat[np.uint32(cells[i])] < needed
+    u, v, across, along = near[0], near[1], near[2], near[3]
+    for k in range(found):
+        i = np.uint32(index[k])
+        u[k], v[k] = x[i] * per_metre - left, y[i] * per_metre - bottom
+        across[k], along[k] = cos[i] * per_metre, sin[i] * per_metre
+    return found
+
+
+@kernel(nogil=True, fastmath=True)
+def _cells_of(
+    shape: tuple[int, int],
+    x: Array32,
+    y: Array32,
+    per_metre: float,
+    left: float,
+    bottom: float,
+    cells: Indices,
+) -> None:
+    """Write the flat index of the cell of every position, or of one at the border."""
+    F, I = np.float32, np.int32
+    right, top, stride = F(shape[1] - 1), F(shape[0] - 1), I(shape[1])
     for i in range(x.size):
         u, v = x[i] * per_metre - left, y[i] * per_metre - bottom
-        if (
-            F(0.0) <= u < F(width)
-            and F(0.0) <= v < F(height)
-            and field.distance_m[np.uint32(v), np.uint32(u)] < needed
-        ):
-            near[0, found], near[1, found] = u, v
-            near[2, found] = cos[i] * per_metre
-            near[3, found] = sin[i] * per_metre
-            index[found] = i
-            found += 1
-    return found
+        column, row = I(min(right, max(F(0.0), u))), I(min(top, max(F(0.0), v)))
+        cells[i] = row * stride + column
 
 
 @kernel(nogil=True, fastmath=True)
@@ -433,32 +450,39 @@ def _clearance_costs(
 
 
 @kernel(nogil=True, fastmath=True)
-def _nearest(
-    path: PathTable, pose: Array32, from_: Indices, at: Indices, apart: Array32
-) -> None:
+def _nearest(path: PathTable, pose: Array32, at: Indices, apart: Array32) -> None:
     """Advance every sample to the nearest of the poses that it can have reached.
 
     ``apart`` gets the squared distance, in which 2 (1 − cos θ) stands for θ².
     """
-    F = np.float32
     x, y, cos, sin = pose[_X], pose[_Y], pose[_COS], pose[_SIN]
     px, py, pc, ps = path.poses[0], path.poses[1], path.poses[2], path.poses[3]
-    per_turn = F(2.0 * METRES_PER_RADIAN**2)
     last = np.int32(path.poses.shape[1] - 1 - path.reach)
+    count = np.uint32(path.reach + 1)
     for i in range(at.size):
-        from_[i] = at[i]
-        apart[i] = F(1e30)
-    for k in range(path.reach + 1):
-        ahead = np.int32(k)
-        for i in range(at.size):
-            j = np.int32(from_[i] + ahead)
-            to = np.uint32(j)
-            dx, dy = x[i] - px[to], y[i] - py[to]
-            turned = F(1.0) - cos[i] * pc[to] - sin[i] * ps[to]
-            there = dx * dx + dy * dy + per_turn * turned
-            nearer = there < apart[i]
-            apart[i] = there if nearer else apart[i]
-            at[i] = min(j, last) if nearer else at[i]
+        nearest = first = np.uint32(at[i])
+        x_i, y_i, cos_i, sin_i = x[i], y[i], cos[i], sin[i]
+        least = np.float32(1e30)
+        for k in range(count):
+            to = first + np.uint32(k)
+            there = _squared_distance(
+                x_i, y_i, sin_i, cos_i, px[to], py[to], ps[to], pc[to]
+            )
+            nearest = to if there < least else nearest
+            least = min(least, there)
+        apart[i] = least
+        at[i] = min(np.int32(nearest), last)
+
+
+@kernel(allocates=False, fastmath={"contract"})
+def _squared_distance(
+    x: float, y: float, sin: float, cos: float,
+    px: float, py: float, ps: float, pc: float,
+) -> float:  # fmt: skip
+    """Return the squared distance of two poses, see :func:`_nearest`."""
+    per_turn = np.float32(2.0 * METRES_PER_RADIAN**2)
+    dx, dy = x - px, y - py
+    return dy * dy + (dx * dx + (per_turn - per_turn * (sin * ps + cos * pc)))
 
 
 @kernel(nogil=True, fastmath=True)

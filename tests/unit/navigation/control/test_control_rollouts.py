@@ -11,7 +11,14 @@ from navette.navigation.control.local_field import local_field
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_candidates import fill_path_candidates
-from navette.navigation.control.rollouts import PathTable, PathWindow
+from navette.navigation.control.rollouts import (
+    PathTable,
+    PathWindow,
+    RolloutBody,
+    _clearances,
+    _near_obstacles,
+    _nearest,
+)
 from navette.navigation.grids import body_points
 
 DRIVE_PARAMS: dict[str, dict[str, Any]] = {
@@ -157,3 +164,48 @@ def test_a_robot_before_a_passage_with_six_centimetres_on_each_side_enters(
     )
     states = drive_along(mppi, path, field, 160, MotionState(0.0, y, yaw, 0.0, 0.0))
     assert states[-1].x > 3.0
+
+
+def random_poses(count: int, reach_m: float) -> np.ndarray:
+    """Poses (4, N): x, y, cosine and sine of the heading."""
+    rng = np.random.default_rng(7)
+    x, y = rng.uniform(-reach_m, reach_m, (2, count))
+    yaw = rng.uniform(-math.pi, math.pi, count)
+    return np.array([x, y, np.cos(yaw), np.sin(yaw)], np.float32)
+
+
+@pytest.mark.parametrize("exact", [True, False])
+def test_no_pose_with_little_clearance_is_left_out(exact: bool) -> None:
+    points = np.random.default_rng(3).uniform(-3, 3, (25, 2))
+    body, enough, count = RolloutBody.of(BODY), np.float32(0.2), 5000
+    field = local_field(points, 0.05, enough + body.reach_m + 0.15)
+    poses = random_poses(count, 4.0)
+    near = np.empty((5, count), np.float32)
+    index, cells = np.empty((2, count), np.int32)
+    found = _near_obstacles(poses, field, body, enough, near, index, cells)
+    assert 0 < found < 0.8 * count
+    every = np.empty((5, count), np.float32)
+    every[:2] = (poses[:2] - np.array([[field.x], [field.y]], np.float32)) / 0.05
+    every[2:4] = poses[2:] / 0.05
+    _clearances(field, body, enough, every, count, exact)
+    tight = np.flatnonzero(every[4] < enough)
+    assert len(tight)
+    assert set(tight) <= set(index[:found])
+    np.testing.assert_allclose(near[:4, :found], every[:4, index[:found]], atol=1e-4)
+
+
+def test_samples_advance_to_the_nearest_pose_that_they_can_reach() -> None:
+    angle = np.arange(0, 3, 0.1)
+    points = np.column_stack([np.sin(angle), 1 - np.cos(angle)])
+    table = PathTable.of(window(points), 0.0, 0.0, 0.35)
+    poses = random_poses(200, 1.5)
+    at = np.arange(200, dtype=np.int32) % len(angle)
+    apart = np.empty(200, np.float32)
+    before = at.copy()
+    _nearest(table, poses, at, apart)
+    gaps = poses[:, :, None] - table.poses[:4, None]
+    squared = (gaps * gaps * np.array([1, 1, 0.25, 0.25])[:, None, None]).sum(axis=0)
+    for i, first in enumerate(before):
+        reached = squared[i, first : first + table.reach + 1]
+        assert apart[i] == pytest.approx(reached.min(), abs=1e-5)
+        assert at[i] == min(first + reached.argmin(), len(angle) - 1)
