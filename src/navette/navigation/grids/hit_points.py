@@ -1,12 +1,15 @@
 """Points at which beams ended, as messages beside the grid of the same stamp."""
 
 import functools
+import math
 from operator import is_
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 from navette.geometry.messages import header
 from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
 
@@ -48,11 +51,18 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
 def _points(msg: PointCloud2, x: int, y: int) -> NDArray[np.float64]:
     """Return the finite points; x and y are at these offsets in each, bytes."""
     rows = np.asarray(msg.data, np.uint8).view(_row_type(x, y, msg.point_step))
-    points = np.empty((len(rows), 2))
-    points[:, 0], points[:, 1] = rows["x"], rows["y"]
-    if not np.isfinite(points).all():
-        points = points[np.isfinite(points).all(axis=1)]
+    points: NDArray[np.float64] = _finite(rows["x"], rows["y"])
     return points
+
+
+@kernel
+def _finite(x: Any, y: Any) -> Any:
+    points = np.empty((x.size, 2))
+    count = 0
+    for k in range(x.size):
+        points[count, 0], points[count, 1] = x[k], y[k]
+        count += math.isfinite(x[k]) and math.isfinite(y[k])
+    return points[:count]
 
 
 @functools.lru_cache(maxsize=16)
