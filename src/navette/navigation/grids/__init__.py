@@ -59,11 +59,11 @@ from navette.navigation.grids.moving_discs import (
     inside_discs,
     without_discs,
 )
+from navette.navigation.grids.obstacle_points import obstacle_points
 from navette.navigation.grids.obstacle_trial import load_obstacle_kernels
 from navette.navigation.grids.obstacles import (
     Obstacles,
     ObstacleTracker,
-    obstacle_points,
 )
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan

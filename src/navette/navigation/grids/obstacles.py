@@ -7,21 +7,18 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids.alignment import placed
 from navette.navigation.grids.hit_points import HitPoints
+from navette.navigation.grids.map_obstacles import MapObstacles, Region
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
-from navette.navigation.grids.spec import FREE, UNKNOWN, GridSpec, grid_frame
-from navette.navigation.grids.sub_cells import (
-    NO_POINTS,
-    CellMarks,
-    point_radius,
-)
+from navette.navigation.grids.obstacle_points import obstacle_points
+from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.navigation.grids.sub_cells import point_radius
 from navette.navigation.grids.unseen import (
     FARTHEST_M,
     Layer,
@@ -30,7 +27,6 @@ from navette.navigation.grids.unseen import (
 )
 from navette.navigation.grids.windows import CellWindow
 
-_PART = 64  # cells of a row that are searched at once
 # Half the edge of the square in which it matters that an earlier map was seen; the
 # robot drives a little before the next map.
 _NEAR_M = FARTHEST_M + 2.0
@@ -95,12 +91,9 @@ class ObstacleTracker:
 
     def reset(self) -> None:
         """Forget all costmaps and the map."""
-        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._map = MapObstacles()
         self._seen: Layer | None = None  # what any map has shown
-        self._map_ns = 0
-        # Where the beams of the map ended, with its stamp.
-        self._map_marks: tuple[int, CellMarks] | None = None
-        self._map_hits, self._hits = HitPoints(), HitPoints()
+        self._hits = HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._placed: OccupancyGrid | None = None  # newest that was placed
         self._costmap_ns: int | None = None
@@ -119,9 +112,8 @@ class ObstacleTracker:
         Raises:
             InvalidValueError: the map is invalid.
         """
-        self._map = grid_from_message(msg)
-        self._map_ns = _stamp_ns(msg)
-        cells, spec = self._map
+        cells, spec = grid_from_message(msg)
+        self._map.receive(cells, spec, _stamp_ns(msg))
         robot = self._poses.predicted_now(now_ns)
         near = CellWindow.whole(cells.shape)
         if robot is not None:
@@ -155,7 +147,7 @@ class ObstacleTracker:
         Raises:
             InvalidValueError: the cloud is invalid.
         """
-        self._map_hits.receive(msg)
+        self._map.receive_points(msg)
 
     def place(
         self, now_ns: int, lethal_cost: int, reach_m: float, unseen_reach_m: float
@@ -180,44 +172,28 @@ class ObstacleTracker:
             return None
         self._costmap, self._placed = None, msg
         cells, spec = grid_from_message(msg)
+        here = Layer(cells, placed(spec, map_T_frame))
         nearby = partial(
             obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m
         )
-        here = Layer(cells, placed(spec, map_T_frame))
         hits = self._hits.at(_stamp_ns(msg))
         if hits is None:
-            points, radius = nearby(cells, spec, map_T_frame), spec.resolution / 2
+            points = nearby(cells, spec, map_T_frame)
+            radius = max(spec.resolution / 2, self._map.half_cell_m)
+            region = Region(around, reach_m, lethal_cost, None)
         else:
             points = _placed_within(
                 hits, np.array(map_T_frame), np.array(around), float(reach_m)
             )
             radius = point_radius(spec.resolution)
-        if self._map is not None:
-            known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
-            beside = around.x, around.y, self._body_m
-            known = _unless_seen(known, cells, here.spec, lethal_cost, beside)
-            if hits is None:
-                radius = max(radius, self._map[1].resolution / 2)
-            else:
-                known = self._points_of(known, radius)
-            points = np.concatenate([points, known])
+            region = Region(around, reach_m, lethal_cost, radius)
+        known = self._map.hidden_from(here, region, self._body_m)
+        points = np.concatenate([points, known])
         if self._zones is not None:
             forbidden = nearby(*self._zones, Pose2(0.0, 0.0, 0.0))
             points = np.concatenate([points, forbidden])
         self.placed_ns = self._costmap_ns
         return Obstacles(points, radius, self._unseen(here, around, unseen_reach_m))
-
-    def _points_of(
-        self, centers: NDArray[np.float64], radius: float
-    ) -> NDArray[np.float64]:
-        """Return points of this radius for lethal cells of the map."""
-        assert self._map is not None, "called with a map"
-        spec = self._map[1]
-        if self._map_marks is None or self._map_marks[0] != self._map_ns:
-            hits = self._map_hits.at(self._map_ns)
-            marks = CellMarks.of(spec, NO_POINTS if hits is None else hits)
-            self._map_marks = self._map_ns, marks
-        return self._map_marks[1].points(spec, centers, radius)
 
     def _unseen(
         self, here: Layer, around: Pose2, reach_m: float
@@ -299,57 +275,6 @@ def _stamp_ns(msg: OccupancyGrid) -> int:
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
-def _unless_seen(
-    points: NDArray[np.float64],
-    cells: NDArray[np.int8],
-    spec: GridSpec,
-    lethal_cost: int,
-    body: tuple[float, float, float],
-) -> NDArray[np.float64]:
-    """Return the points (N, 2), map, that are not in known cells of a costmap.
-
-    In the circle around the ``body`` (x, y, radius), free cells beside obstacle cells
-    do not count: beams along a surface pass through the cells of its end.
-    """
-    frame = grid_frame(spec)
-    kept: NDArray[np.float64] = _drop_seen(points, cells, frame, lethal_cost, *body)
-    return kept
-
-
-@kernel
-def _drop_seen(
-    points: Any, cells: Any, frame: Any, lethal: int, x: float, y: float, body: float
-) -> Any:
-    height, width = cells.shape
-    kept = np.empty_like(points)
-    count = 0
-    for k in range(points.shape[0]):
-        dx, dy = points[k, 0] - frame.x, points[k, 1] - frame.y
-        column = math.floor((frame.cos * dx + frame.sin * dy) / frame.resolution)
-        row = math.floor((frame.cos * dy - frame.sin * dx) / frame.resolution)
-        inside = 0 <= row < height and 0 <= column < width
-        known = inside and cells[row, column] != UNKNOWN
-        if known and math.hypot(points[k, 0] - x, points[k, 1] - y) <= body:
-            known = not _is_beside(cells, row, column, lethal)
-        if not known:
-            kept[count, 0], kept[count, 1] = points[k, 0], points[k, 1]
-            count += 1
-    return kept[:count]
-
-
-@kernel(allocates=False)
-def _is_beside(cells: Any, row: int, column: int, lethal: int) -> bool:
-    """Return whether a free cell has an obstacle cell beside it."""
-    if cells[row, column] >= lethal:
-        return False
-    height, width = cells.shape
-    for i in range(max(0, row - 1), min(height, row + 2)):
-        for j in range(max(0, column - 1), min(width, column + 2)):
-            if cells[i, j] >= lethal:
-                return True
-    return False
-
-
 @kernel
 def _placed_within(points: Any, map_T_frame: Any, around: Any, reach: float) -> Any:
     """Return the points (N, 2) of a frame that are within reach of a pose, map."""
@@ -364,86 +289,3 @@ def _placed_within(points: Any, map_T_frame: Any, around: Any, reach: float) -> 
             kept[count, 0], kept[count, 1] = px, py
             count += 1
     return kept[:count]
-
-
-def obstacle_points(
-    cost: NDArray[np.int8],
-    spec: GridSpec,
-    map_T_grid: Pose2,
-    *,
-    lethal_cost: int,
-    around: Pose2,
-    reach_m: float,
-) -> NDArray[np.float64]:
-    """Return centres (N, 2), metres, map, of the lethal cells within reach of a pose.
-
-    Args:
-        cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
-            do not count as obstacles: the grid is unknown behind every hit, and may
-            be unknown under the body.
-        spec: geometry of ``cost`` in its frame.
-        map_T_grid: pose of that frame in the map at the costmap's stamp.
-        lethal_cost: value from which a cell is an obstacle.
-        around: centre of the region (map).
-        reach_m: radius of the region.
-
-    Raises:
-        InvalidValueError: the size of ``cost`` does not match ``spec``.
-    """
-    if cost.size != spec.width * spec.height:
-        raise InvalidValueError(
-            f"costmap of {cost.size} cells: expected {spec.width} x {spec.height}"
-        )
-    map_T_origin = map_T_grid @ spec.origin
-    origin_T_around = map_T_origin.inverse() @ around
-    return _gather(
-        cost.reshape(spec.shape),
-        lethal_cost,
-        origin_T_around.x / spec.resolution,
-        origin_T_around.y / spec.resolution,
-        reach_m / spec.resolution,
-        spec.resolution,
-        *map_T_origin,
-    )
-
-
-@kernel
-def _gather(
-    cost: Any,
-    lethal: int,
-    column: float,
-    row: float,
-    reach: float,
-    resolution: float,
-    x: float,
-    y: float,
-    yaw: float,
-) -> NDArray[np.float64]:
-    """Return lethal cells within ``reach`` of (column, row), all in cells, as points.
-
-    ``x, y, yaw``: pose of the grid's corner in the frame of the points.
-    """
-    top, left = max(0, int(row - reach)), max(0, int(column - reach))
-    bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
-    right = max(left, min(cost.shape[1], int(column + reach) + 1))
-    points = np.empty((256, 2))
-    count = 0
-    c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
-    for i in range(top, bottom):
-        v = i + 0.5
-        for first in range(left, right, _PART):
-            line = cost[i, first : min(right, first + _PART)]
-            highest = np.int8(FREE)
-            for j in range(line.size):  # vectorised: most parts have no lethal cell
-                highest = max(highest, line[j])
-            if highest < lethal:
-                continue
-            if count + _PART > points.shape[0]:
-                points = np.concatenate((points, np.empty_like(points)))
-            for j in range(line.size):
-                u = first + j + 0.5
-                if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
-                    points[count, 0] = x + c * u - s * v
-                    points[count, 1] = y + s * u + c * v
-                    count += 1
-    return points[:count].copy()

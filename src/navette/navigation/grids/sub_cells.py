@@ -66,12 +66,22 @@ class CellMarks(NamedTuple):
         _add_marks(marks, points, grid_frame(spec))
         return marks
 
-    def points(self, spec: GridSpec, centers: Points, radius_m: float) -> Points:
-        """Return :func:`cell_points` of the lethal cells with these centres (M, 2)."""
-        points: Points = _marked_or_circle(
-            self, centers, grid_frame(spec), _circle(spec, radius_m)
-        )
-        return points
+    def points_by_cell(
+        self, spec: GridSpec, centers: Points, radius_m: float
+    ) -> tuple[NDArray[np.int64], Points]:
+        """Return points as :func:`cell_points` for lethal cells, cell by cell.
+
+        Args:
+            spec: geometry of the grid.
+            centers: (M, 2) of the cells, m.
+            radius_m: of each point.
+
+        Returns:
+            Index (M + 1,) of the first point of each cell, and the points (N, 2), m.
+        """
+        circle = _circle(spec, radius_m)
+        first, points = _marked_or_circle(self, centers, grid_frame(spec), circle)
+        return first, points
 
 
 def cell_points(
@@ -172,13 +182,48 @@ def _in_cells(points: Any, k: int, frame: Any) -> Any:
 
 @kernel
 def _marked_or_circle(marks: Any, centers: Any, frame: Any, circle: Any) -> Any:
-    cells = np.empty(centers.shape, np.int64)
     masks = np.empty(centers.shape[0], np.uint64)
+    first = np.zeros(centers.shape[0] + 1, np.int64)
     for k in range(centers.shape[0]):
         u, v = _in_cells(centers, k, frame)
-        cells[k, 0], cells[k, 1] = math.floor(v), math.floor(u)
-        masks[k] = marks.masks[_slot(marks.cells, cells[k, 0], cells[k, 1])]
-    return _cell_points(masks, cells, frame, circle)
+        masks[k] = marks.masks[_slot(marks.cells, math.floor(v), math.floor(u))]
+        first[k + 1] = first[k] + (_bits(masks[k]) or circle.shape[0])
+    points = np.empty((first[-1], 2))
+    for k in range(centers.shape[0]):
+        u, v = _in_cells(centers, k, frame)
+        row, column, at = math.floor(v), math.floor(u), first[k]
+        if masks[k] == 0:
+            x, y = _from_cells(column + 0.5, row + 0.5, frame)
+            for i in range(circle.shape[0]):
+                points[at + i, 0], points[at + i, 1] = (
+                    x + circle[i, 0],
+                    y + circle[i, 1],
+                )
+        for part in range(SUB_CELLS * SUB_CELLS):
+            if (masks[k] >> np.uint64(part)) & np.uint64(1):
+                part_u = column + (part % SUB_CELLS + 0.5) / SUB_CELLS
+                part_v = row + (part // SUB_CELLS + 0.5) / SUB_CELLS
+                points[at, 0], points[at, 1] = _from_cells(part_u, part_v, frame)
+                at += 1
+    return first, points
+
+
+@kernel(allocates=False)
+def _bits(mask: Any) -> int:
+    """Return how many bits of a mask are set."""
+    count = 0
+    while mask != 0:
+        mask &= mask - np.uint64(1)
+        count += 1
+    return count
+
+
+@kernel(allocates=False)
+def _from_cells(u: float, v: float, frame: Any) -> Any:
+    """Return the position, m, of u, v in cells."""
+    u, v = u * frame.resolution, v * frame.resolution
+    x = frame.x + frame.cos * u - frame.sin * v
+    return x, frame.y + frame.sin * u + frame.cos * v
 
 
 @kernel

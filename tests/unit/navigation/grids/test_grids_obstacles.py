@@ -14,14 +14,18 @@ from navette.navigation.grids import (
     GridSpec,
     Layer,
     cell_points,
+    grid_frame,
     mark_points,
     obstacle_points,
+    points_to_message,
 )
-from navette.navigation.grids.obstacles import (
-    _placed_within,
-    _seen_also,
-    _unless_seen,
+from navette.navigation.grids.map_obstacles import (
+    LethalCells,
+    MapObstacles,
+    Region,
+    _hidden,
 )
+from navette.navigation.grids.obstacles import _placed_within, _seen_also
 from navette.navigation.grids.sub_cells import CellMarks
 
 SEEDS = st.integers(0, 10_000)
@@ -90,9 +94,44 @@ def test_points_in_known_cells_are_left_out(seed: int) -> None:
         around = cells[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
         return not (around >= 100).any()
 
-    plain = [point for point in points.tolist() if not is_seen(*point)]
-    found = _unless_seen(points, cells, spec, 100, (body_x, body_y, body_m))
+    reach_m = float(rng.uniform(4, 20))
+    plain = [
+        point
+        for point in points.tolist()
+        if math.dist(point, (body_x, body_y)) <= reach_m and not is_seen(*point)
+    ]
+    near = LethalCells(points, np.arange(len(points) + 1), points)
+    region = body_x, body_y, reach_m, body_m
+    found = _hidden(near, cells, grid_frame(spec), 100, region)
     np.testing.assert_array_equal(found, np.array(plain).reshape(-1, 2))
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS, radius_m=st.sampled_from([None, 0.003]))
+def test_cells_collected_before_the_robot_moved_give_the_same_points(
+    seed: int, radius_m: float | None
+) -> None:
+    rng = np.random.default_rng(seed)
+    cells, spec = some_grid(rng)
+    shown, placed = some_grid(rng)
+    size = np.array((spec.width, spec.height)) * spec.resolution
+    hits = points_to_message(spec.origin.apply(rng.random((50, 2)) * size), "map", 7)
+
+    def make() -> MapObstacles:
+        obstacles = MapObstacles()
+        obstacles.receive_points(hits)
+        obstacles.receive(cells, spec, 7)
+        return obstacles
+
+    used, around = make(), some_pose(rng)
+    for step in range(6):
+        around = around @ Pose2(0.4, 0.0, 0.3)
+        region = Region(around, 2.0 + 0.1 * step, LETHAL - step // 4, radius_m)
+        found, plain = (
+            obstacles.hidden_from(Layer(shown, placed), region, 0.3)
+            for obstacles in (used, make())
+        )
+        np.testing.assert_allclose(found, plain, atol=1e-9)
 
 
 @settings(max_examples=60, deadline=None)
@@ -107,9 +146,13 @@ def test_points_of_a_few_cells_are_those_of_the_whole_grid(
     cells = np.argwhere(rng.random(spec.shape) < 0.1)
     masks = np.zeros(spec.shape, np.uint64)
     mark_points(masks, spec, hits)
-    plain = cell_points(masks[tuple(cells.T)], spec, cells, 0.003)
-    found = CellMarks.of(spec, hits).points(spec, spec.centers_of(cells), 0.003)
-    np.testing.assert_allclose(found, plain, atol=1e-9)
+    marks = CellMarks.of(spec, hits)
+    first, found = marks.points_by_cell(spec, spec.centers_of(cells), 0.003)
+    assert first[-1] == len(found)
+    for k, cell in enumerate(cells):
+        plain = cell_points(masks[tuple(cell)][None], spec, cell[None], 0.003)
+        of_cell = found[first[k] : first[k + 1]]
+        np.testing.assert_allclose(of_cell, plain, atol=1e-9)
 
 
 def test_cells_that_a_map_has_shown_stay_seen() -> None:

@@ -1,0 +1,97 @@
+"""Lethal cells of a grid around a pose, as points in the map."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
+from navette.geometry import Pose2
+from navette.navigation.grids.spec import FREE, GridSpec
+
+_PART = 64  # cells of a row that are searched at once
+
+
+def obstacle_points(
+    cost: NDArray[np.int8],
+    spec: GridSpec,
+    map_T_grid: Pose2,
+    *,
+    lethal_cost: int,
+    around: Pose2,
+    reach_m: float,
+) -> NDArray[np.float64]:
+    """Return centres (N, 2), metres, map, of the lethal cells within reach of a pose.
+
+    Args:
+        cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
+            do not count as obstacles: the grid is unknown behind every hit, and may
+            be unknown under the body.
+        spec: geometry of ``cost`` in its frame.
+        map_T_grid: pose of that frame in the map at the costmap's stamp.
+        lethal_cost: value from which a cell is an obstacle.
+        around: centre of the region (map).
+        reach_m: radius of the region.
+
+    Raises:
+        InvalidValueError: the size of ``cost`` does not match ``spec``.
+    """
+    if cost.size != spec.width * spec.height:
+        raise InvalidValueError(
+            f"costmap of {cost.size} cells: expected {spec.width} x {spec.height}"
+        )
+    map_T_origin = map_T_grid @ spec.origin
+    origin_T_around = map_T_origin.inverse() @ around
+    return _gather(
+        cost.reshape(spec.shape),
+        lethal_cost,
+        origin_T_around.x / spec.resolution,
+        origin_T_around.y / spec.resolution,
+        reach_m / spec.resolution,
+        spec.resolution,
+        *map_T_origin,
+    )
+
+
+@kernel
+def _gather(
+    cost: Any,
+    lethal: int,
+    column: float,
+    row: float,
+    reach: float,
+    resolution: float,
+    x: float,
+    y: float,
+    yaw: float,
+) -> NDArray[np.float64]:
+    """Return lethal cells within ``reach`` of (column, row), all in cells, as points.
+
+    ``x, y, yaw``: pose of the grid's corner in the frame of the points.
+    """
+    top, left = max(0, int(row - reach)), max(0, int(column - reach))
+    bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
+    right = max(left, min(cost.shape[1], int(column + reach) + 1))
+    points = np.empty((256, 2))
+    count = 0
+    c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
+    for i in range(top, bottom):
+        v = i + 0.5
+        for first in range(left, right, _PART):
+            line = cost[i, first : min(right, first + _PART)]
+            highest = np.int8(FREE)
+            for j in range(line.size):  # vectorised: most parts have no lethal cell
+                highest = max(highest, line[j])
+            if highest < lethal:
+                continue
+            if count + _PART > points.shape[0]:
+                points = np.concatenate((points, np.empty_like(points)))
+            for j in range(line.size):
+                u = first + j + 0.5
+                if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
+                    points[count, 0] = x + c * u - s * v
+                    points[count, 1] = y + s * u + c * v
+                    count += 1
+    return points[:count].copy()
