@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import DRIVES
 from navette.navigation.control.drive_models import (
     ACKERMANN,
@@ -101,16 +102,17 @@ class Mppi:
         """
         self._params = params
         self._drive = DRIVES.index(params.drive)
-        self._limits = _limits(params)
+        self._cap, self._limits = NO_CAP, _limits(params, NO_CAP)
         self._weights = _weights(params)
         self._step_s = params.mppi_step_s
         self._temperature = params.mppi_temperature
         self._body = RolloutBody.of(body)
         steps, samples = params.mppi_steps, params.mppi_samples
         self._noise = self._draw(samples, steps, np.random.default_rng(seed))
-        self._fixed = self._manoeuvres(steps)
+        fixed = self._manoeuvres(steps)
         if swerves:
-            self._fixed = np.concatenate([self._fixed, self._swerves(steps)], axis=2)
+            fixed = np.concatenate([fixed, self._swerves(steps)], axis=2)
+        self._fixed = fixed.astype(np.float32)
         self._commands = np.zeros((steps, len(self._most)), np.float32)
         # Turns in place get a drive out of most tight places; others track the path.
         self._tracked = 0 if self._drive == DIFFERENTIAL else len(SHARES)
@@ -121,7 +123,8 @@ class Mppi:
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""
-        self._limits = _limits(self._params, limits)
+        if limits != self._cap:
+            self._cap, self._limits = limits, _limits(self._params, limits)
 
     def reset(self) -> None:
         """Forget the command sequence: the robot stands."""
@@ -148,8 +151,7 @@ class Mppi:
 
         ``discs``: moving obstacles (M, 5) x, y, vx, vy, radius.
         """
-        self._shift(dt)
-        candidates = self._draw_candidates()
+        candidates = self._draw_candidates(dt)
         step_s: Any = np.float32(self._step_s)
         motion = state.speed, state.side, state.turn_rate, self._curvature(state)
         fastest = max(abs(state.speed) + abs(state.side), sum(self._most[:-1]))
@@ -235,19 +237,15 @@ class Mppi:
         most = float(self._limits.max_curvature)
         return min(most, max(-most, state.turn_rate / state.speed))
 
-    def _shift(self, dt: float) -> None:
-        """Move the sequence by ``dt``, interpolating between its steps."""
-        share = min(1.0, dt / self._step_s)
-        self._commands[:-1] += share * (self._commands[1:] - self._commands[:-1])
+    def _draw_candidates(self, dt: float) -> Array32:
+        """Return the candidates (T, D, K): noise about the sequence, and manoeuvres.
 
-    def _draw_candidates(self) -> Array32:
-        """Return the candidates (T, D, K): noise about the sequence, and manoeuvres."""
+        The sequence is first moved by ``dt``.
+        """
+        share: Any = np.float32(min(1.0, dt / self._step_s))
         noise = self._noise[self._turn]
         self._turn = (self._turn + 1) % _NOISE_SETS
-        samples = noise.shape[2]
-        np.add(noise, self._commands[:, :, None], out=self._candidates[:, :, :samples])
-        fixed = self._fixed.shape[2]
-        self._candidates[:, :, samples : samples + fixed] = self._fixed
+        _fill_candidates(share, self._commands, noise, self._fixed, self._candidates)
         return self._candidates
 
     def _average(self, candidates: Array32) -> None:
@@ -328,6 +326,24 @@ class Mppi:
         return commands
 
 
+@kernel(allocates=False)
+def _fill_candidates(
+    share: float, commands: Array32, noise: Array32, fixed: Array32, candidates: Array32
+) -> None:
+    """Move commands (T, D) by a share of a step; add noise (T, D, S) and fixed ones."""
+    steps, parts, samples = noise.shape
+    for t in range(steps):
+        for part in range(parts):
+            if t + 1 < steps:
+                change = commands[t + 1, part] - commands[t, part]
+                commands[t, part] += share * change
+            row, about = candidates[t, part], commands[t, part]
+            for k in range(samples):
+                row[k] = noise[t, part, k] + about
+            for k in range(fixed.shape[2]):
+                row[samples + k] = fixed[t, part, k]
+
+
 def _relative(discs: Array, state: MotionState) -> Array32:
     """Return discs relative to the robot's position."""
     return (discs - (state.x, state.y, 0.0, 0.0, 0.0)).astype(np.float32)
@@ -347,7 +363,7 @@ def _weights(params: ControlParams) -> CostWeights:
     return CostWeights._make(map(np.float32, values))
 
 
-def _limits(params: ControlParams, cap: SpeedCap = NO_CAP) -> DriveLimits:
+def _limits(params: ControlParams, cap: SpeedCap) -> DriveLimits:
     radius = params.min_turning_radius_m
     values = DriveLimits(
         max_speed=min(params.cruise_speed_mps, cap.forward),

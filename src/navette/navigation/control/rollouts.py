@@ -100,11 +100,18 @@ class PathTable(NamedTuple):
         spacing = (measure[-1] - measure[0]) / max(count - 1, 1)
         reach = min(_MOST_POSES, math.ceil(farthest_m / max(spacing, 1e-3)) + 1)
         poses = np.empty((6, count + reach), np.float32)
-        poses[0, :count], poses[1, :count] = path.x - x, path.y - y
-        poses[2, :count], poses[3, :count] = path.cos, path.sin
-        poses[4, :count], poses[5, :count] = measure - measure[0], path.direction
-        poses[:, count:] = poses[:, count - 1 : count]
+        _fill_poses(path, x, y, poses)
         return cls(poses, reach)
+
+
+@kernel(allocates=False)
+def _fill_poses(path: PathWindow, x: float, y: float, poses: Array32) -> None:
+    last = path.x.size - 1
+    for k in range(poses.shape[1]):
+        i = min(k, last)
+        poses[0, k], poses[1, k] = path.x[i] - x, path.y[i] - y
+        poses[2, k], poses[3, k] = path.cos[i], path.sin[i]
+        poses[4, k], poses[5, k] = path.measure[i] - path.measure[0], path.direction[i]
 
 
 class LocalField(NamedTuple):

@@ -142,14 +142,15 @@ def _hidden(near: LethalCells, cells: Any, frame: Any, lethal: int, region: Any)
     count = 0
     for k in range(near.centers.shape[0]):
         cx, cy = near.centers[k, 0], near.centers[k, 1]
-        if (cx - x) ** 2 + (cy - y) ** 2 > reach * reach:
+        away = (cx - x) ** 2 + (cy - y) ** 2
+        if away > reach * reach:
             continue
         dx, dy = cx - frame.x, cy - frame.y
         column = math.floor((frame.cos * dx + frame.sin * dy) / frame.resolution)
         row = math.floor((frame.cos * dy - frame.sin * dx) / frame.resolution)
         inside = 0 <= row < height and 0 <= column < width
         known = inside and cells[row, column] != UNKNOWN
-        if known and math.hypot(cx - x, cy - y) <= body:
+        if known and away <= body * body:
             known = not _is_beside(cells, row, column, lethal)
         if not known:
             for i in range(near.first[k], near.first[k + 1]):
