@@ -40,12 +40,12 @@ class PieceProgress:
         first = piece.index_at(self._s - _BACK_M)
         last = piece.index_at(self._s + self._ahead) + 1
         self._ahead = _AHEAD_M
-        x, y = piece.x, piece.y
-        nearest = min(
-            range(first, min(last, len(x))),
-            key=lambda i: (x[i] - pose.x) ** 2 + (y[i] - pose.y) ** 2,
-        )
-        point = self._on_segment(nearest, pose)
+        x, y, _ = pose
+        gaps = [
+            (px - x) * (px - x) + (py - y) * (py - y)
+            for px, py in zip(piece.x[first:last], piece.y[first:last], strict=True)
+        ]
+        point = self._on_segment(first + gaps.index(min(gaps)), pose)
         self._s = min(max(point.s, 0.0), piece.length)
         return point
 
