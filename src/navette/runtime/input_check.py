@@ -7,8 +7,7 @@ message validation.
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple, NoReturn
 
 from navette.errors import InvalidInputError
 from navette.msgs.interface import MessageSpec
@@ -80,100 +79,99 @@ def _once(check: Check) -> Check:
     return check_once
 
 
-def _check_of_fields(
-    spec: MessageSpec, *, geometry: bool, headers: bool = True
-) -> Check | None:
-    """Return the check of the fields that are messages, or None if all values pass."""
-    checked = [
-        (path, attrgetter(path), check, is_scalar)
-        for path, check, is_scalar in _checked_parts(
-            spec, geometry=geometry, headers=headers
-        )
-    ]
-    if not checked:
-        return None
+def _check_of_fields(spec: MessageSpec, *, geometry: bool) -> Check | None:
+    """Return the check of the fields that are messages, or None if all values pass.
 
-    def check_fields(msg: Any) -> None:
-        for path, value_in, check, is_scalar in checked:
-            try:
-                if is_scalar:
-                    check(value_in(msg))
-                else:
-                    for each in value_in(msg):
-                        check(each)
-            except InvalidInputError as error:
-                raise InvalidInputError(
-                    error.reason, f"{path}.{error.detail}"
-                ) from None
-
-    return check_fields
-
-
-def _checked_parts(
-    spec: MessageSpec, *, geometry: bool, headers: bool
-) -> Iterator[tuple[str, Check, bool]]:
-    """Yield path, check and whether it is a single value of each part to check.
-
-    Parts of single messages come with their path, such as ``pose.pose.position``: a
-    check that calls that of each level takes twice as long.
+    Its source is written out for the type: every message that arrives is checked, and a
+    call for each field takes four times as long.
     """
+    lines = list(_lines(_Place(spec, "msg", "", " "), geometry=geometry))
+    if not lines:
+        return None
+    source = "\n".join(["def check_fields(msg):", *lines])
+    scope: dict[str, Any] = {"refuse": _refuse}
+    exec(compile(source, f"<check of {spec.name}>", "exec"), scope)
+    check: Check = scope["check_fields"]
+    return check
+
+
+class _Place(NamedTuple):
+    """A message within the one that is checked.
+
+    Attributes:
+        source: expression of the message.
+        path: the prefix of its fields in errors, such as ``pose.``.
+        pad: indentation of its checks.
+    """
+
+    spec: MessageSpec
+    source: str
+    path: str
+    pad: str
+
+
+def _lines(place: _Place, *, geometry: bool, headers: bool = True) -> Iterator[str]:
+    """Yield the source lines that check the fields of a message."""
+    spec, source, prefix, pad = place
     for field in spec.fields:
-        name, type_ = field.name, field.type
-        if not type_.is_message:
+        base = field.type.base
+        value, path = f"{source}._{field.name}", f"{prefix}{field.name}"
+        if not field.type.is_message:
             continue
-        if type_.base == "std_msgs/msg/Header":
-            if headers:
-                yield name, _check_header, type_.is_scalar
-        elif type_.base in _GEOMETRY:
-            if geometry:
-                yield name, _GEOMETRY[type_.base], type_.is_scalar
-        elif type_.is_scalar:
-            inner = get_message_spec(type_.base)
-            parts = _checked_parts(inner, geometry=geometry, headers=headers)
-            for path, check, is_scalar in parts:
-                yield f"{name}.{path}", check, is_scalar
-        else:
-            # The stamps of elements, such as the poses of a path, are not used.
-            inner = get_message_spec(type_.base)
-            each = _check_of_fields(inner, geometry=geometry, headers=False)
-            if each is not None:
-                yield name, each, False
+        if base not in _RULES:
+            part = _Place(get_message_spec(base), value, f"{path}.", pad)
+            if field.type.is_scalar:
+                yield from _lines(part, geometry=geometry, headers=headers)
+            else:
+                yield from _loop(part, geometry=geometry)
+        elif headers if base == _HEADER else geometry:
+            is_scalar = field.type.is_scalar
+            yield f"{pad}p = {value}" if is_scalar else f"{pad}for p in {value}:"
+            test = f"if not ({_RULES[base].usable}): refuse({path!r}, {base!r}, p)"
+            yield f"{pad}{test}" if is_scalar else f"{pad} {test}"
 
 
-def _check_header(header: Any) -> None:
+def _loop(elements: _Place, *, geometry: bool) -> Iterator[str]:
+    """Yield the source lines that check the elements of a list.
+
+    Their stamps, such as those of the poses of a path, are not used.
+    """
+    pad = elements.pad
+    each = f"e{len(pad)}"
+    element = elements._replace(source=each, pad=f"{pad} ")
+    lines = list(_lines(element, geometry=geometry, headers=False))
+    if lines:
+        yield f"{pad}for {each} in {elements.source}:"
+        yield from lines
+
+
+def _refuse(path: str, base: str, part: Any) -> NoReturn:
+    error = _RULES[base].fault(part)
+    raise InvalidInputError(error.reason, f"{path}.{error.detail}")
+
+
+def _stamp_fault(header: Any) -> InvalidInputError:
     stamp = header.stamp
-    if stamp.sec < 0 or stamp.nanosec >= _NS_PER_S:
-        raise InvalidInputError(
-            "invalid_stamp",
-            f"stamp is {stamp.sec} s and {stamp.nanosec} ns; "
-            "sec must be >= 0 and nanosec below 1e9",
-        )
+    return InvalidInputError(
+        "invalid_stamp",
+        f"stamp is {stamp.sec} s and {stamp.nanosec} ns; "
+        "sec must be >= 0 and nanosec below 1e9",
+    )
 
 
-def _check_vector(vector: Any) -> None:
-    x, y, z = vector.x, vector.y, vector.z
-    if not (
-        -FARTHEST <= x <= FARTHEST
-        and -FARTHEST <= y <= FARTHEST
-        and -FARTHEST <= z <= FARTHEST
-    ):
-        raise _unusable("x, y, z", (x, y, z))
+def _vector_fault(vector: Any) -> InvalidInputError:
+    return _unusable("x, y, z", (vector.x, vector.y, vector.z))
 
 
-def _check_planar(pose: Any) -> None:
-    values = (pose.x, pose.y, pose.theta)
-    if not all(-FARTHEST <= value <= FARTHEST for value in values):
-        raise _unusable("x, y, theta", values)
+def _planar_fault(pose: Any) -> InvalidInputError:
+    return _unusable("x, y, theta", (pose.x, pose.y, pose.theta))
 
 
-def _check_quaternion(q: Any) -> None:
+def _quaternion_fault(q: Any) -> InvalidInputError:
     x, y, z, w = q.x, q.y, q.z, q.w
-    least, most = _NORMS_SQUARED
-    if least <= x * x + y * y + z * z + w * w <= most:
-        return
     if _any_not_finite((x, y, z, w)):
-        raise _unusable("x, y, z, w", (x, y, z, w))
-    raise InvalidInputError(
+        return _unusable("x, y, z, w", (x, y, z, w))
+    return InvalidInputError(
         "invalid_orientation",
         f"x, y, z, w = ({x:g}, {y:g}, {z:g}, {w:g}) is not a unit quaternion; for a "
         "heading θ use z = sin(θ/2), w = cos(θ/2)",
@@ -197,7 +195,7 @@ def _any_not_finite(values: tuple[float, ...]) -> bool:
 
 def _check_scan(scan: Any) -> None:
     first, step, count = scan.angle_min, scan.angle_increment, len(scan.ranges)
-    if _any_not_finite((first, step)):
+    if first - first != 0.0 or step - step != 0.0:
         raise InvalidInputError(
             "not_finite",
             f"angle_min = {first:g}, angle_increment = {step:g}; must be finite",
@@ -237,12 +235,33 @@ def _check_grid(grid: Any) -> None:
         )
 
 
-_GEOMETRY: dict[str, Check] = {
-    "geometry_msgs/msg/Point": _check_vector,
-    "geometry_msgs/msg/Point32": _check_vector,
-    "geometry_msgs/msg/Vector3": _check_vector,
-    "geometry_msgs/msg/Pose2D": _check_planar,
-    "geometry_msgs/msg/Quaternion": _check_quaternion,
+class _Rule(NamedTuple):
+    """Condition of a usable part ``p`` of a message, and what is wrong with another."""
+
+    usable: str
+    fault: Callable[[Any], InvalidInputError]
+
+
+def _within(*names: str) -> str:
+    tests = [f"-{FARTHEST!r} <= p._{name} <= {FARTHEST!r}" for name in names]
+    return " and ".join(tests)
+
+
+_HEADER = "std_msgs/msg/Header"
+_VECTOR = _Rule(_within("x", "y", "z"), _vector_fault)
+_NORM_SQUARED = "p._x * p._x + p._y * p._y + p._z * p._z + p._w * p._w"
+_RULES: dict[str, _Rule] = {
+    _HEADER: _Rule(
+        f"0 <= p._stamp._sec and p._stamp._nanosec < {_NS_PER_S}", _stamp_fault
+    ),
+    "geometry_msgs/msg/Point": _VECTOR,
+    "geometry_msgs/msg/Point32": _VECTOR,
+    "geometry_msgs/msg/Vector3": _VECTOR,
+    "geometry_msgs/msg/Pose2D": _Rule(_within("x", "y", "theta"), _planar_fault),
+    "geometry_msgs/msg/Quaternion": _Rule(
+        f"{_NORMS_SQUARED[0]!r} <= {_NORM_SQUARED} <= {_NORMS_SQUARED[1]!r}",
+        _quaternion_fault,
+    ),
 }
 _BY_TYPE: dict[str, Check] = {
     "sensor_msgs/msg/LaserScan": _check_scan,

@@ -10,7 +10,7 @@ import pytest
 from navette.errors import InvalidInputError
 from navette.msgs import get_interface
 from navette.msgs.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import Pose, PoseStamped, Quaternion
+from navette.msgs.geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
@@ -250,6 +250,18 @@ def test_a_type_of_a_user_is_checked_by_its_parts() -> None:
     marker.pose.position.z = math.nan
     with pytest.raises(InvalidInputError, match=r"pose\.position\.x, y, z"):
         check(marker)
+
+
+def test_lists_of_messages_within_lists_are_checked() -> None:
+    check = input_check("visualization_msgs/msg/MarkerArray")
+    markers = get_interface("visualization_msgs/msg/MarkerArray")()
+    marker = get_interface("visualization_msgs/msg/Marker")()
+    marker.header.stamp.sec = -1  # the stamps of elements are not used
+    marker.points = [Point(), Point(y=math.inf)]
+    check(markers)
+    markers.markers = [marker]
+    with pytest.raises(InvalidInputError, match=r"markers\.points\.x, y, z = "):
+        check(markers)
 
 
 class Thinned(Listener):
