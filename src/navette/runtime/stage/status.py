@@ -36,6 +36,7 @@ class StatusReporter:
     def __init__(self, node: StageNode, topic: str) -> None:
         self._status = DiagnosticStatus(name=node.get_name())
         self._cause = ""
+        self._details: dict[str, Any] = {}
         self._publish = partial(node.publish, topic)
         self._timer = node.create_timer(_PERIOD_S, self._repeat)
 
@@ -54,15 +55,21 @@ class StatusReporter:
         status = self._status
         is_new = (state, level, cause) != (status.message, status.level, self._cause)
         status.message, status.level, self._cause = state, level, cause
-        status.values = [
-            KeyValue(key=key, value=_text(value)) for key, value in details.items()
-        ]
+        self._details = details
         if is_new:
-            self._publish(status)
+            self._publish_newest()
 
     def _repeat(self) -> None:
         if self._status.message:
-            self._publish(self._status)
+            self._publish_newest()
+
+    def _publish_newest(self) -> None:
+        # Stages report in each step; most of the reports are replaced by the next one.
+        self._status.values = [
+            KeyValue(key=key, value=_text(value))
+            for key, value in self._details.items()
+        ]
+        self._publish(self._status)
 
 
 def _text(value: Any) -> str:
