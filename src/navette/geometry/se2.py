@@ -46,7 +46,8 @@ class Pose2(NamedTuple):
         """Transform points (N, 2) from the inner to the outer frame, metres."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         rotation = np.array([[c, s], [-s, c]])
-        moved: NDArray[np.float64] = points @ rotation + (self.x, self.y)
+        moved: NDArray[np.float64] = points @ rotation
+        moved += (self.x, self.y)
         return moved
 
     def distance_to(self, other: "Pose2") -> float:
@@ -73,7 +74,9 @@ def advanced(
     the turn θ = ω t.
     """
     half = turn_rate * seconds / 2
-    share = seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
     c, s = math.cos(half), math.sin(half)
-    x, y = share * (speed * c - side * s), share * (speed * s + side * c)
-    return pose @ Pose2(x, y, 2 * half)
+    share = seconds * (s / half if abs(half) > 1e-6 else 1.0)
+    dx, dy = share * (speed * c - side * s), share * (speed * s + side * c)
+    x, y, yaw = pose
+    c, s = math.cos(yaw), math.sin(yaw)
+    return Pose2(x + c * dx - s * dy, y + s * dx + c * dy, wrap_angle(yaw + 2 * half))

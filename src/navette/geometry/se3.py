@@ -108,9 +108,10 @@ class Transform3(NamedTuple):
         return (x + tx, y + ty, z + tz)
 
     def __matmul__(self, other: "Transform3") -> "Transform3":
-        return Transform3(
-            self.apply(other.translation), multiply(self.rotation, other.rotation)
-        )
+        (tx, ty, tz), rotation = self
+        (x, y, z), turn = other
+        x, y, z = rotate(rotation, (x, y, z))
+        return Transform3((x + tx, y + ty, z + tz), multiply(rotation, turn))
 
     def inverse(self) -> "Transform3":
         x, y, z, w = self.rotation

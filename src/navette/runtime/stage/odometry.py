@@ -102,11 +102,12 @@ class PoseTracker:
 
     def update(self, odometry: Odometry) -> bool:
         """Use a message; return False if it is unusable, and log the reason."""
+        header, pose, twist = odometry.header, odometry.pose.pose, odometry.twist.twist
         child_T_base = self._base_in(odometry.child_frame_id)
-        map_T_odom = self._odom_in_map(odometry.header.frame_id)
+        map_T_odom = self._odom_in_map(header.frame_id)
         if child_T_base is None or map_T_odom is None:
             return False
-        position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
+        position, q = pose.position, pose.orientation
         odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
         odom_T_base = (
             odom_T_child if child_T_base is _HERE else odom_T_child @ child_T_base
@@ -115,12 +116,10 @@ class PoseTracker:
         if not _is_near(on_map):
             self._drop_pose(on_map)
             return False
-        if odometry.header.frame_id != self._odom_frame:
-            self._odom_frame = odometry.header.frame_id
+        if header.frame_id != self._odom_frame:
+            self._odom_frame = header.frame_id
             self._history.clear()
-        stamp_ns = stamp_to_ns(odometry.header.stamp)
-        self._store(stamp_ns, odom_T_base, on_map, map_T_odom)
-        twist = odometry.twist.twist
+        self._store(stamp_to_ns(header.stamp), odom_T_base, on_map, map_T_odom)
         self._velocity, self._side_speed = _velocity_of_base(
             twist.linear.x, twist.linear.y, twist.angular.z, child_T_base
         )
@@ -152,13 +151,14 @@ class PoseTracker:
 
         The prediction continues the newest motion for at most 0.25 s.
         """
-        newest, latest_ns = self.latest, self.stamp_ns
-        if newest is None or latest_ns is None:
+        if not self._history:
             return None
+        latest_ns = self._history[-1][0]
         if stamp_ns <= latest_ns:
             return self.pose_at(stamp_ns)
         seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
-        return advanced(newest, *self._velocity, seconds, side=self._side_speed)
+        speed, turn_rate = self._velocity
+        return advanced(self._latest, speed, turn_rate, seconds, side=self._side_speed)
 
     def predicted_now(self, now_ns: int) -> Pose2 | None:
         """Return map_T_base now, or that of odometry stamped ahead of the clock."""
