@@ -257,6 +257,9 @@ def _ndarray_checker(where: str, type_: FieldType) -> Checker:
     allowed = f"a sequence of {type_.base}"
 
     def check(value: Any) -> NDArray[Any]:
+        if isinstance(value, np.ndarray) and value.dtype == dtype and value.ndim == 1:
+            _check_length(where, type_, len(value))
+            return np.ascontiguousarray(value)
         found = _as_array(where, value, dtype, allowed)
         if found.ndim != 1:
             raise MessageError(

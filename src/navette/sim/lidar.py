@@ -2,7 +2,7 @@
 """A planar laser scanner by ray casting."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -20,8 +20,7 @@ from navette.sim.shape_table import ShapeTable
 _LEVEL = np.zeros(1)  # elevation of the beams
 
 
-@dataclass(frozen=True)
-class Scan:
+class Scan(NamedTuple):
     """One scan: ``ranges`` (N,) in metres, beam i at angle_min + i · increment.
 
     +inf: nothing within range_max; −inf: closer than range_min; NaN: lost beam

@@ -104,11 +104,12 @@ def estimate_of(truth: Odometry) -> PoseWithCovarianceStamped:
 
 def _motion_of(base_T_child: Transform3, motion: Motion) -> Motion:
     """Return the velocity of a frame fixed to the base, in that frame."""
-    lever = cross(motion.angular, base_T_child.translation)
-    vx, vy, vz = (a + b for a, b in zip(motion.linear, lever, strict=True))
-    child_R_base = base_T_child.inverse().rotation
+    (vx, vy, vz), omega = motion
+    lx, ly, lz = cross(omega, base_T_child.translation)
+    x, y, z, w = base_T_child.rotation
+    child_R_base = (-x, -y, -z, w)
     return Motion(
-        rotate(child_R_base, (vx, vy, vz)), rotate(child_R_base, motion.angular)
+        rotate(child_R_base, (vx + lx, vy + ly, vz + lz)), rotate(child_R_base, omega)
     )
 
 

@@ -34,6 +34,9 @@ class RobotState:
     def __init__(self, robot: RobotIndex, data: mujoco.MjData) -> None:
         self._robot = robot
         self._data = data
+        # Views: MuJoCo never moves its arrays.
+        self._root = data.qpos[robot.qpos : robot.qpos + 7]
+        self._root_speed = data.qvel[robot.qvel : robot.qvel + 6]
         self._root_T_base = robot.root_T_model @ robot.model_T_base
         self._base_T_root = self._root_T_base.inverse()
         self._direction = np.array([wheel.direction for wheel in robot.wheels])
@@ -45,10 +48,9 @@ class RobotState:
         return self._root_pose() @ self._root_T_base
 
     def place(self, world_T_base: Transform3) -> None:
-        at = self._robot.qpos
         pose = world_T_base @ self._base_T_root
         x, y, z, w = pose.rotation
-        self._data.qpos[at : at + 7] = (*pose.translation, w, x, y, z)
+        self._root[:] = (*pose.translation, w, x, y, z)
 
     def motion(self) -> Motion:
         """Velocity of the base in its own frame."""
@@ -100,14 +102,12 @@ class RobotState:
         return self.pose().inverse() @ Transform3((px, py, pz), (x, y, z, w))
 
     def _root_pose(self) -> Transform3:
-        at = self._robot.qpos
-        x, y, z, qw, qx, qy, qz = self._data.qpos[at : at + 7].tolist()
+        x, y, z, qw, qx, qy, qz = self._root.tolist()
         return Transform3((x, y, z), (qx, qy, qz, qw))
 
     def _root_velocity(self) -> tuple[Vector3, Vector3]:
         """Velocity of a free joint: linear in the world, angular in the root frame."""
-        at = self._robot.qvel
-        vx, vy, vz, wx, wy, wz = self._data.qvel[at : at + 6].tolist()
+        vx, vy, vz, wx, wy, wz = self._root_speed.tolist()
         return (vx, vy, vz), (wx, wy, wz)
 
 
