@@ -4,6 +4,7 @@ BehaviorTree.CPP's IDLE is py_trees' INVALID: a node in this state starts from t
 beginning at its next tick.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -95,6 +96,16 @@ class LeafNode(TreeNode):
 
     def halt(self) -> None:
         """Override to end what is under way; the node was running."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        # Without the debug text of py_trees, and its check of a typed status.
+        if self.status is not RUNNING:
+            self.initialise()
+        status = self.update()
+        if status is not RUNNING:
+            self.stop(status)
+        self.status = status
+        yield self
 
     def initialise(self) -> None:
         if self.status is IDLE:
