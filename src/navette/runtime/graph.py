@@ -183,6 +183,11 @@ class Graph(TransportObserver):
         every = (e for t in self.transports for e in t.endpoints(topic))
         return _selected(every, topic, kind, node)
 
+    def count(self, topic: str, kind: EndpointKind) -> int:
+        """Return the number of publishers or subscriptions of a topic (full name)."""
+        every = [e for t in self.transports for e in t.endpoints(topic)]
+        return sum(e.kind == kind and e.topic == topic for e in every)
+
     def service_endpoints(
         self,
         service: str | None = None,

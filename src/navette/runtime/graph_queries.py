@@ -66,10 +66,12 @@ class GraphQueries:
         return len(self._node_on_service(EndpointKind.CLIENT, service_name))
 
     def count_publishers(self, topic_name: str) -> int:
-        return len(self._node_on_topic(EndpointKind.PUBLISHER, topic_name))
+        topic = self.resolve_topic_name(topic_name)
+        return self._node_graph.count(topic, EndpointKind.PUBLISHER)
 
     def count_subscribers(self, topic_name: str) -> int:
-        return len(self._node_on_topic(EndpointKind.SUBSCRIPTION, topic_name))
+        topic = self.resolve_topic_name(topic_name)
+        return self._node_graph.count(topic, EndpointKind.SUBSCRIPTION)
 
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False

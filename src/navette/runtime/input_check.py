@@ -57,26 +57,35 @@ class SharedInputChecks:
     """
 
     def __init__(self) -> None:
-        self._checks: dict[tuple[str, bool], Check] = {}
+        self._checks: dict[tuple[str, bool], SharedCheck] = {}
 
-    def of(self, type_name: str, *, contents: bool = True) -> Check:
+    def of(self, type_name: str, *, contents: bool = True) -> "SharedCheck":
         """As :func:`input_check`; skips the message that passed it last."""
         key = type_name, contents
         if key not in self._checks:
-            self._checks[key] = _once(input_check(type_name, contents=contents))
+            check = input_check(type_name, contents=contents)
+            self._checks[key] = SharedCheck(check)
         return self._checks[key]
 
 
-def _once(check: Check) -> Check:
-    passed: Any = None
+class SharedCheck:
+    """The check of one type of messages that the nodes of a context share.
 
-    def check_once(msg: Any) -> None:
-        nonlocal passed
-        if msg is not passed:
-            check(msg)
-            passed = msg
+    Attributes:
+        passed: the message that passed last, and needs no call.
+    """
 
-    return check_once
+    __slots__ = ("_check", "passed")
+
+    def __init__(self, check: Check) -> None:
+        self._check = check
+        self.passed: Any = None
+
+    def __call__(self, msg: Any) -> None:
+        """Check a message, unless it passed last; raises InvalidInputError."""
+        if msg is not self.passed:
+            self._check(msg)
+            self.passed = msg
 
 
 def _check_of_fields(spec: MessageSpec, *, geometry: bool) -> Check | None:

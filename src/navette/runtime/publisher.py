@@ -106,7 +106,10 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def get_subscription_count(self) -> int:
         """Return the number of matched subscriptions."""
-        return sum(port.matched_count for port in self.ports)
+        count = 0
+        for port in self.ports:
+            count += port.matched_count
+        return count
 
     def assert_liveliness(self) -> None:
         """Renew the lease of a publisher with manual liveliness."""

@@ -108,10 +108,13 @@ class PoseTracker:
         if child_T_base is None or map_T_odom is None:
             return False
         position, q = pose.position, pose.orientation
-        odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
-        odom_T_base = (
-            odom_T_child if child_T_base is _HERE else odom_T_child @ child_T_base
-        )
+        odom_T_base = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
+        linear, turn_rate = twist.linear, twist.angular.z
+        speed, side_speed = linear.x, linear.y
+        if child_T_base is not _HERE:
+            odom_T_base = odom_T_base @ child_T_base
+            velocity = speed, side_speed, turn_rate
+            speed, side_speed = _velocity_of_base(*velocity, child_T_base)
         on_map = odom_T_base if map_T_odom is _HERE else map_T_odom @ odom_T_base
         if not _is_near(on_map):
             self._drop_pose(on_map)
@@ -120,9 +123,7 @@ class PoseTracker:
             self._odom_frame = header.frame_id
             self._history.clear()
         self._store(stamp_to_ns(header.stamp), odom_T_base, on_map, map_T_odom)
-        self._velocity, self._side_speed = _velocity_of_base(
-            twist.linear.x, twist.linear.y, twist.angular.z, child_T_base
-        )
+        self._velocity, self._side_speed = (speed, turn_rate), side_speed
         return True
 
     def pose_at(self, stamp_ns: int) -> Pose2 | None:
@@ -217,9 +218,11 @@ class PoseTracker:
                 history.pop()
             else:
                 history.clear()  # time jumped backward
-        was_carried = (
-            not history or history[-1][1].distance_to(odom_T_base) > _CARRIED_M
-        )
+        was_carried = True
+        if history:
+            before = history[-1][1]
+            moved = math.hypot(odom_T_base.x - before.x, odom_T_base.y - before.y)
+            was_carried = moved > _CARRIED_M
         if map_T_odom is not self._map_T_odom:
             before = self._on_map(odom_T_base)  # by the transform until now
             self._map_T_odom = map_T_odom
@@ -309,14 +312,12 @@ def _is_near(pose: Pose2) -> bool:
 
 def _velocity_of_base(
     vx: float, vy: float, omega: float, child_T_base: Pose2
-) -> tuple[tuple[float, float], float]:
-    """Return (forward speed, turn rate) and the speed to the left of the base.
+) -> tuple[float, float]:
+    """Return the speed forward and to the left of the base.
 
     v_base = v_child + ω × p (rigid body), rotated into the base's axes.
     """
-    if child_T_base is _HERE:
-        return (vx, omega), vy
     x, y, yaw = child_T_base
     along, across = vx - omega * y, vy + omega * x
     c, s = math.cos(yaw), math.sin(yaw)
-    return (c * along + s * across, omega), c * across - s * along
+    return c * along + s * across, c * across - s * along

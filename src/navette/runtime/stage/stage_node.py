@@ -276,7 +276,9 @@ class StageNode(Node):
         def receive(msg: Any) -> Any:
             before_ns = arrivals.get(topic)
             try:
-                checks[msg.__class__](msg)
+                check = checks[msg.__class__]
+                if msg is not check.passed:
+                    check(msg)
                 arrivals[topic] = clock.now_ns
                 return callback(msg)
             except InvalidInputError as error:
@@ -360,11 +362,9 @@ class StageNode(Node):
 
 def _at_most(rate_hz: float, callback: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """Return a callback for messages of a header that skips those not selected."""
-    selection = StampSelection(rate_hz)
+    takes = StampSelection(rate_hz).takes
 
     def call(msg: Any) -> Any:
-        if selection.takes(stamp_to_ns(msg.header.stamp)):
-            return callback(msg)
-        return None
+        return callback(msg) if takes(stamp_to_ns(msg.header.stamp)) else None
 
     return call
