@@ -79,7 +79,8 @@ class Lidar(BeamSensor):
         self.angle_increment = (
             float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
         )
-        self._beams = np.array([(math.cos(a), math.sin(a)) for a in self._angles])
+        beams = [(math.cos(a), math.sin(a)) for a in self._angles]
+        self._beams = np.array(beams).T.copy()
         self._distance, self._noise = np.empty(n), np.zeros(n)
 
     def warm_up(self) -> None:

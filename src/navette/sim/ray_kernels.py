@@ -152,7 +152,7 @@ def cast_fan(  # type: ignore[no-untyped-def]
 
     Args:
         angles: (N,) rad, evenly spaced, at most one turn.
-        beams: (N, 2) their cosines and sines.
+        beams: (2, N) their cosines and sines.
         reach: m; farther shapes are ignored.
         distance: (N,) m, written; inf where nothing is hit.
     """
@@ -169,16 +169,16 @@ def cast_fan(  # type: ignore[no-untyped-def]
         if half < 0.0:
             continue
         if half >= math.pi:
-            _cast_beams(kind[g], size[g], m, c, beams, begin, n - 1, distance)
+            _cast_beams(kind[g], size[g], m, c, beams, begin, n, distance)
             continue
         # As beam indices, within one turn from the first beam.
         low, width = (middle - half - angles[0]) / step, 2.0 * half / step
         low -= math.floor(low / turn) * turn
-        last = min(n - 1, math.floor(low + width))
-        _cast_beams(kind[g], size[g], m, c, beams, math.ceil(low), last, distance)
+        end = min(n, math.floor(low + width) + 1)
+        _cast_beams(kind[g], size[g], m, c, beams, math.ceil(low), end, distance)
         if low + width >= turn:  # wraps around to the first beams
-            last = min(n - 1, math.floor(low + width - turn))
-            _cast_beams(kind[g], size[g], m, c, beams, begin, last, distance)
+            end = min(n, math.floor(low + width - turn) + 1)
+            _cast_beams(kind[g], size[g], m, c, beams, begin, end, distance)
 
 
 @kernel
@@ -248,17 +248,47 @@ def _bearing_of_box(hx, hy, hz, m, c):  # type: ignore[no-untyped-def]
 
 @kernel(inline="never")
 def _cast_beams(  # type: ignore[no-untyped-def]
-    kind, size, m, c, beams, first, last, distance
+    kind, size, m, c, beams, begin, end, distance
 ):
     ox, oy, oz = _eye(m, c)
-    for i in range(first, last + 1):
-        x, y = beams[i, 0], beams[i, 1]
+    cosines, sines = beams[0, begin:end], beams[1, begin:end]
+    nearest = distance[begin:end]
+    if kind == BOX:
+        _cast_at_box(size, ox, oy, oz, m, cosines, sines, nearest)
+        return
+    for i in range(len(nearest)):
+        x, y = cosines[i], sines[i]
         dx = m[0, 0] * x + m[1, 0] * y
         dy = m[0, 1] * x + m[1, 1] * y
         dz = m[0, 2] * x + m[1, 2] * y
         t = _hit(kind, size[0], size[1], size[2], ox, oy, oz, dx, dy, dz)
-        if t < distance[i]:
-            distance[i] = t
+        if t < nearest[i]:
+            nearest[i] = t
+
+
+@kernel(allocates=False, inline="never", error_model="numpy")
+def _cast_at_box(  # type: ignore[no-untyped-def]
+    size, ox, oy, oz, m, cosines, sines, nearest
+):
+    """As :func:`_hit_box`, without branches: four beams at once (SIMD).
+
+    Along a face, a beam beside the box meets it beyond every reach instead of nowhere.
+    """
+    lx, ly, lz = -size[0] - ox, -size[1] - oy, -size[2] - oz
+    hx, hy, hz = size[0] - ox, size[1] - oy, size[2] - oz
+    ax, ay, az, bx, by, bz = m[0, 0], m[0, 1], m[0, 2], m[1, 0], m[1, 1], m[1, 2]
+    for i in range(np.uint64(len(nearest))):
+        near, far = -np.inf, np.inf
+        for a, b, low, high in ((ax, bx, lx, hx), (ay, by, ly, hy), (az, bz, lz, hz)):
+            d = a * cosines[i] + b * sines[i]
+            d = d if abs(d) >= 1e-12 else 1e-12
+            t0, t1 = low / d, high / d
+            first, last = (t0, t1) if t0 < t1 else (t1, t0)
+            near = first if first > near else near
+            far = last if last < far else far
+        t = near if near >= 0.0 else far
+        t = np.inf if near > far or far < 0.0 else t
+        nearest[i] = t if t < nearest[i] else nearest[i]
 
 
 @kernel

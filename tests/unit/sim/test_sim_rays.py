@@ -78,7 +78,7 @@ def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     ours = np.empty(len(angles))
     cast_fan(
         shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
-        angles, np.column_stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
+        angles, np.stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
     )  # fmt: skip
     beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, np.inf)
@@ -106,7 +106,7 @@ def test_fans_between_walls_equal_mujocos(seed: int) -> None:
     ours = np.empty(len(angles))
     cast_fan(
         shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
-        angles, np.column_stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
+        angles, np.stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
     )  # fmt: skip
     beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, 30.0)
