@@ -65,6 +65,8 @@ class TreeRun:
     def take_changes(self) -> list[StatusChange]:
         """Return the changes of status since the last call, in the tree's order."""
         now = [node.status for node in self.nodes]
+        if now == self._statuses:  # mostly
+            return []
         changes = [
             StatusChange(node.name, node.uid, STATUS_WORDS[old], STATUS_WORDS[new])
             for node, old, new in zip(self.nodes, self._statuses, now, strict=True)
