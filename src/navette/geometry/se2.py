@@ -47,7 +47,8 @@ class Pose2(NamedTuple):
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         rotation = np.array([[c, s], [-s, c]])
         moved: NDArray[np.float64] = points @ rotation
-        moved += (self.x, self.y)
+        # As complex numbers: numpy adds a row of two numbers point by point.
+        moved.view(np.complex128)[...] += complex(self.x, self.y)
         return moved
 
     def distance_to(self, other: "Pose2") -> float:
