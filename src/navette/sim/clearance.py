@@ -24,8 +24,8 @@ class Clearance:
 class ClearanceProbe:
     """Distance of body to obstacles: bounding boxes first, then exact pairs.
 
-    Obstacles are tried in the order of a lower bound on their distance; the search
-    ends when no bound is below the best pair found.
+    Pairs of an obstacle and a part of the robot are tried in the order of a lower bound
+    on their distance; the search ends when no bound is below the best pair found.
     """
 
     def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
@@ -38,7 +38,7 @@ class ClearanceProbe:
         self._part_radius = np.array(model.geom_rbound)[self._parts]
         self._low, self._high = bounds_of(model, data, obstacles)
         self._radius = np.array(model.geom_rbound)[obstacles]
-        self._bounds = np.empty(len(obstacles))
+        self._bounds = np.empty(len(obstacles) * len(self._parts))
         self.reach = self._farthest(data)
 
     def _farthest(self, data: mujoco.MjData) -> float:
@@ -53,22 +53,22 @@ class ClearanceProbe:
             return Clearance(np.inf, "")
         model = self._compiled.model
         self._update_bounds(data)
-        best, nearest = np.inf, -1
-        for i in np.argsort(self._bounds).tolist():
-            if self._bounds[i] >= best:
+        best, nearest, bounds = np.inf, -1, self._bounds
+        while True:
+            pair = int(bounds.argmin())
+            if bounds[pair] >= best:
                 break
-            obstacle = int(self._obstacles[i])
-            for part in self._parts.tolist():
-                limit = min(best, 1e3)
-                distance = mujoco.mj_geomDistance(
-                    model, data, part, obstacle, limit, None
-                )
-                if distance < best:
-                    best, nearest = distance, obstacle
+            bounds[pair] = np.inf  # measured below
+            row, column = divmod(pair, len(self._parts))
+            obstacle, part = int(self._obstacles[row]), int(self._parts[column])
+            limit = min(best, 1e3)
+            distance = mujoco.mj_geomDistance(model, data, part, obstacle, limit, None)
+            if distance < best:
+                best, nearest = distance, obstacle
         return Clearance(float(best), self._compiled.geom_owner[nearest])
 
     def _update_bounds(self, data: mujoco.MjData) -> None:
-        """Write a lower bound of the distance for each obstacle."""
+        """Write a lower bound of the distance for each obstacle and part."""
         moving = self._moving
         if len(moving):
             places = data.geom_xpos[self._obstacles[moving]]
@@ -80,29 +80,22 @@ class ClearanceProbe:
 
 @kernel
 def _lower_bounds(centres, radius, low, high, bounds):  # type: ignore[no-untyped-def]
-    """Write lower bounds (N,) of the distances from balls to boxes, m.
+    """Write lower bounds (N · P,) of the distances from boxes to balls, m.
 
     Args:
-        centres: (P, 3) of the balls, whose surrounding ball is compared.
+        centres: (P, 3) of the balls.
         radius: (P,) of the balls.
         low, high: (N, 3) corners of the boxes.
     """
-    count = len(centres)
-    x, y, z = 0.0, 0.0, 0.0
-    for i in range(count):
-        x += centres[i, 0]
-        y += centres[i, 1]
-        z += centres[i, 2]
-    x, y, z = x / count, y / count, z / count
-    around = 0.0
-    for i in range(count):
-        dx, dy, dz = centres[i, 0] - x, centres[i, 1] - y, centres[i, 2] - z
-        around = max(around, math.sqrt(dx * dx + dy * dy + dz * dz) + radius[i])
-    for i in range(len(bounds)):
-        dx = max(low[i, 0] - x, x - high[i, 0], 0.0)
-        dy = max(low[i, 1] - y, y - high[i, 1], 0.0)
-        dz = max(low[i, 2] - z, z - high[i, 2], 0.0)
-        bounds[i] = math.sqrt(dx * dx + dy * dy + dz * dz) - around
+    k = 0
+    for i in range(len(low)):
+        for j in range(len(centres)):
+            x, y, z = centres[j, 0], centres[j, 1], centres[j, 2]
+            dx = max(low[i, 0] - x, x - high[i, 0], 0.0)
+            dy = max(low[i, 1] - y, y - high[i, 1], 0.0)
+            dz = max(low[i, 2] - z, z - high[i, 2], 0.0)
+            bounds[k] = math.sqrt(dx * dx + dy * dy + dz * dz) - radius[j]
+            k += 1
 
 
 def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:
