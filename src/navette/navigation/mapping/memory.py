@@ -223,7 +223,7 @@ class MapMemory:
         corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
         reach = 0.0 if self.footprint is None else self.footprint.circumscribed_radius
         body = [(base.x + s * reach, base.y + s * reach) for s in (-1.0, 1.0)]
-        points = [spec.origin.apply(corners), (*body, costmap.sensor)]
+        points = [spec.origin.apply(corners), np.array([*body, costmap.sensor])]
         if costmap.hits is not None:
             # Beams that end outside a costmap of the user's own pass cells there.
             points.append(costmap.hits)

@@ -137,6 +137,7 @@ class MapMemoryNode(StageNode):
     )
 
     params: MapMemoryParams
+    _odometry: Odometry | None  # newest
 
     def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -241,7 +242,7 @@ class MapMemoryNode(StageNode):
         self._restart()
 
     def _restart(self) -> None:
-        self._odometry: Odometry | None = None  # newest
+        self._odometry = None
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._memory.reset()
         self._gate.reset()
