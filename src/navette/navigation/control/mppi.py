@@ -258,7 +258,7 @@ class Mppi:
         self._commands = (candidates.reshape(-1, len(weight)) @ weight).reshape(shape)
 
     def _first_command(self) -> VelocityCommand:
-        first = [float(value) for value in self._commands[0]]
+        first = self._commands[0].tolist()
         if self._drive == OMNI:
             return VelocityCommand(first[0], first[2], first[1])
         if self._drive == ACKERMANN:

@@ -117,8 +117,9 @@ class ObstacleTracker:
         robot = self._poses.predicted_now(now_ns)
         near = CellWindow.whole(cells.shape)
         if robot is not None:
-            corners = np.add.outer((-_NEAR_M, _NEAR_M), (robot.x, robot.y))
-            near = CellWindow.around(spec, corners)
+            row, column = spec.cell_of(robot.x, robot.y)
+            here = CellWindow(row, row + 1, column, column + 1)
+            near = here.grown(math.ceil(_NEAR_M / spec.resolution), cells.shape)
         self._seen = _seen_also(Layer(cells, spec), self._seen, near)
 
     def relocate(self) -> None:
