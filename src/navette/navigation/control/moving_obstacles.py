@@ -90,7 +90,8 @@ def add_moving_costs(
     steps, count = commands.shape[0], costs.shape[0]
     pose, speed = np.zeros((4, count), np.float32), np.zeros((4, count), np.float32)
     pose[2], pose[3] = math.cos(yaw), math.sin(yaw)
-    least, free = np.empty(count, np.float32), np.ones(count, np.float32)
+    least, before = np.empty(count, np.float32), np.empty(count, np.float32)
+    free = np.ones(count, np.float32)
     weight = F(_CLEARANCE_WEIGHT) * step_s
     for t in range(steps):
         speed[FORWARD] = commands[t, 0]
@@ -106,23 +107,27 @@ def add_moving_costs(
         least[:] = keep
         for m in range(discs.shape[0]):
             x, y = discs[m, 0] + time * discs[m, 2], discs[m, 1] + time * discs[m, 3]
-            _lower_to_disc(pose, x, y, discs[m, 4] + F(body[0]), least)
+            least, before = before, least
+            _lower_to_disc(pose, x, y, discs[m, 4] + F(body[0]), before, least)
         crash = F(_COLLISION * (1.0 - 0.67 * t / steps))
         for i in range(count):
             lack = min(F(1.0), (keep - least[i]) / keep)
             hit = least[i] < F(0.0)
             costs[i] += free[i] * (weight * lack * lack + (crash if hit else F(0.0)))
-            free[i] = F(0.0) if hit else free[i]
+            free[i] *= F(0.0) if hit else F(1.0)
 
 
 @kernel(nogil=True, fastmath=True)
 def _lower_to_disc(
-    pose: Array32, x: float, y: float, reach: float, least: Array32
+    pose: Array32, x: float, y: float, reach: float, before: Array32, least: Array32
 ) -> None:
-    """Lower the gaps (K,) of the robot to what is left beside one disc."""
+    """Write the gaps (K,) of the robot ``before``, or what is left beside one disc.
+
+    Two arrays: in one, LLVM would store through a mask, which is slow on AMD.
+    """
     for i in range(least.size):
         dx, dy = x - pose[0, i], y - pose[1, i]
-        least[i] = min(least[i], math.sqrt(dx * dx + dy * dy) - reach)
+        least[i] = min(before[i], math.sqrt(dx * dx + dy * dy) - reach)
 
 
 @kernel(
