@@ -60,6 +60,44 @@ def cost_field(obstacles: np.ndarray) -> np.ndarray:
     return np.where(obstacles > 0, LETHAL, falling).astype(np.uint8)
 
 
+def maze(size: int, room: int = 16, wall: int = 4, seed: int = 3) -> np.ndarray:
+    """Rooms that random walks join to a tree (Wilson 1996): one path to each."""
+    rng = np.random.default_rng(seed)
+    cost = np.full((size, size), LETHAL, np.uint8)
+    count = (size - wall) // room
+
+    def open_between(a: Cell, b: Cell) -> None:
+        (top, left), (bottom, right) = np.sort([a, b], axis=0).tolist()
+        rows = slice(top * room + wall, (bottom + 1) * room)
+        cost[rows, left * room + wall : (right + 1) * room] = 0
+
+    joined = {(0, 0)}
+    for start in np.ndindex(count, count):
+        step: dict[Cell, Cell] = {}
+        at: Cell = start
+        while at not in joined:
+            move = ((0, 1), (1, 0), (0, -1), (-1, 0))[rng.integers(4)]
+            after = at[0] + move[0], at[1] + move[1]
+            if min(after) >= 0 and max(after) < count:
+                step[at], at = after, after
+        at = start
+        while at not in joined:
+            joined.add(at)
+            open_between(at, step[at])
+            at = step[at]
+    return cost
+
+
+def clutter(size: int, seed: int = 4) -> np.ndarray:
+    """Lethal blocks of one to four cells a side, all over the map."""
+    rng = np.random.default_rng(seed)
+    cost = np.zeros((size, size), np.uint8)
+    for row, column in rng.integers(1, size - 4, (size * size // 40, 2)).tolist():
+        height, width = rng.integers(1, 5, 2)
+        cost[row : row + height, column : column + width] = LETHAL
+    return cost
+
+
 def far_queries(cost: np.ndarray, count: int = 12, seed: int = 2) -> list[Query]:
     """Return distant, connected free cells."""
     rng = np.random.default_rng(seed)
@@ -277,6 +315,8 @@ def main() -> None:
     for size, target_ms in ((1024, 12.0), (2048, 38.0)):
         field = cost_field(obstacle_map(size))
         add_searches(bench, f"cost field {size}²", field, 3.0, target_ms)
+    add_searches(bench, "maze 1024²", maze(1024), 0.0, 16.0)
+    add_searches(bench, "clutter 1024²", clutter(1024), 0.0, 1.6)
     add_string_pulling(bench, obstacle_map(1024))
     add_whole_plans(bench)
     for size, target_ms in ((1024, 1.0), (4096, 3.0)):

@@ -3,7 +3,8 @@
 Hart, Nilsson and Raphael 1968, with an open list as in Dial 1969: a circle of
 buckets over fixed-point f. A bucket is a last-in-first-out list of cells, so the
 search dives towards the goal. Cells whose g decreases are opened again, and the search
-ends when the goal's own bucket is empty, which keeps the result exact.
+ends when the goal's own bucket is empty, which keeps the result exact. Neighbours that
+a path past the cell reaches for no more are not offered (:mod:`.pruning`).
 Diagonal moves need both orthogonal neighbours free.
 """
 
@@ -22,10 +23,16 @@ from navette.navigation.planning.bucket_queue import (
     new_pool,
     pop,
     push,
+    push_next,
     reserve,
 )
 from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
 from navette.navigation.planning.methods import PLANNERS
+from navette.navigation.planning.pruning import (
+    all_neighbours,
+    steps_around,
+    successors,
+)
 from navette.navigation.planning.traversal import (
     DIAGONAL,
     STRAIGHT,
@@ -36,7 +43,7 @@ from navette.navigation.planning.traversal import (
     rim_of,
 )
 
-# A record per cell: stamp << 48 | (most − g) << 4 | closed << 3 | direction. The stamp
+# A record per cell: stamp << 48 | (most − g) << 4 | closed << 3 | last move. The stamp
 # increases with every query, so records of earlier queries, and the zeros of a new
 # array, compare as more expensive than any and need no clearing. Memory that no search
 # has touched is not occupied.
@@ -93,29 +100,37 @@ class AStar:
         if start == goal:
             return np.array([start], np.int64), 0
         self._prepare(grid.cost.size)
+        from_units = min(int(min(bound, _NEVER)), _NEVER)
         query = _Query(
-            start[0] + 1,
-            start[1] + 1,
-            goal[0] + 1,
-            goal[1] + 1,
+            _item_of(start),
+            _item_of(goal),
             np.int64(self._stamp << 48),
             self._records,
-            min(int(min(bound, _NEVER)), _NEVER),
+            np.array([from_units]),
             *_elsewhere(cheap, goal, table),
+            steps_around(grid.stride),
+            steps_around(1 << 16),
+            np.zeros((_NEIGHBOURS, 2), np.int64),
         )
         steepest = query.excess * TILE * DIAGONAL // 10_000
         queue = BucketQueue.spanning(table.longest + DIAGONAL + steepest)
-        total, self._pool = _search(grid, query, queue, self._pool)
-        if total < 0:
+        self._pool = _search(grid, query, queue, self._pool)
+        total = int(query.best[0])
+        if total >= from_units:
             return None
         ends = grid.index_of(start), grid.index_of(goal)
-        return _trace(self._records, grid.stride, *ends), total
+        return _trace(self._records, query.steps, grid.stride, *ends), total
 
     def _prepare(self, size: int) -> None:
         self._stamp += 1
         if self._records.size != size or self._stamp > _LAST_STAMP:
             self._records = sparse_zeros((size,), np.int64)
             self._stamp = 1
+
+
+def _item_of(cell: Cell) -> int:
+    """Return a cell as the open list stores it: row << 16 | column, rimmed."""
+    return (cell[0] + 1) << 16 | (cell[1] + 1)
 
 
 def _elsewhere(
@@ -128,154 +143,127 @@ def _elsewhere(
 
 
 class _Query(NamedTuple):
-    """Ends in the rimmed grid, the query's stamp in a record, and the records.
+    """What is asked, and what the search remembers.
 
-    ``bound``: cost from which a path is not wanted. ``away``: distance of each tile
-    from the cheap ones, in units; ``excess``: what a unit of cost elsewhere costs more,
-    in 1/10000.
+    Attributes:
+        start, goal: items of the open list; see :func:`_item_of`.
+        base: the query's stamp in a record.
+        records: one per cell of the rimmed grid.
+        best: (1,) least cost of a path so far, at first that of an unwanted one.
+        away: distance of each tile from the cheap ones, in units.
+        excess: what a unit of cost elsewhere costs more, in 1/10000.
+        steps: (8,) what a move adds to an index.
+        item_steps: (8,) what a move adds to an item.
+        offers: (8, 2) neighbours to offer a path to; see :mod:`.pruning`.
     """
 
-    start_row: int
-    start_column: int
-    goal_row: int
-    goal_column: int
+    start: int
+    goal: int
     base: np.int64
     records: NDArray[np.int64]
-    bound: int
+    best: NDArray[np.int64]
     away: NDArray[np.int64]
     excess: int
+    steps: NDArray[np.int64]
+    item_steps: NDArray[np.int64]
+    offers: NDArray[np.int64]
 
 
 @kernel
 def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
-    """Search the grid; return (g of the goal or −1, the pool).
-
-    An open item is row << 16 | column.
-    """
-    row, column = query.start_row, query.start_column
-    bucket = _to_goal(query, row, column) >> queue.shift
-    query.records[row * grid.stride + column] = query.base | (_G_MASK << 4)
-    push(pool, queue, bucket, (row << 16) | column)
-    best: Any = np.int64(query.bound)
-    found, done = False, False
+    """Lower ``best`` to the least cost of a path; return the pool."""
+    bucket: Any = np.int64(_to_goal(query, query.start) >> queue.shift)
+    query.records[_index(grid, query.start)] = query.base | (_G_MASK << 4)
+    push(pool, queue, bucket, query.start)
+    done = False
     while not done:
         pool = reserve(pool, queue, _NEIGHBOURS)
-        bucket, best, found, done = _expand_while_room(
-            grid, query, queue, pool, bucket, best, found
-        )
-    return (best if found else np.int64(-1)), pool
+        bucket, done = _expand_while_room(grid, query, queue, pool, bucket)
+    return pool
 
 
 @kernel(allocates=False)
 def _expand_while_room(
-    grid: Any, query: Any, queue: Any, pool: Any, bucket: Any, best: Any, found: bool
-) -> tuple[int, int, bool, bool]:
+    grid: Any, query: Any, queue: Any, pool: Any, bucket: Any
+) -> tuple[int, bool]:
     """Expand cells until the search is done, or the pool is full.
 
-    Returns the bucket, g of the goal, whether it was reached, whether that is final.
+    Returns the bucket, and whether the search is done.
     """
-    stride, records, shift = grid.stride, query.records, queue.shift
-    while queue.state[WAITING] > 0 and bucket <= best >> shift:
+    records, steps, offers, best = query.records, query.steps, query.offers, query.best
+    while queue.state[WAITING] > 0 and bucket <= best[0] >> queue.shift:
         if not has_room(pool, queue, _NEIGHBOURS):
-            return bucket, best, found, False
+            return bucket, False
         item = pop(pool, queue, bucket)
         if item < 0:
             bucket += 1
             continue
-        row, column = item >> 16, item & 0xFFFF
-        index = np.uint64(row * stride + column)
-        record = records[index]
+        index = _index(grid, item)
+        record = records[np.uint64(index)]
         if record & _CLOSED:
             continue
-        records[index] = record | _CLOSED
+        records[np.uint64(index)] = record | _CLOSED
         g = _G_MASK - ((record >> 4) & _G_MASK)
-        behind = _behind(record & 7) if g > 0 else 0  # the start: none
-        least = _expand(grid, query, queue, pool, bucket, row, column, g, behind, best)
-        found |= least < best
-        best = least
-    return bucket, best, found, True
+        if g > 0:
+            count = successors(grid, steps, index, record & 7, offers)
+        else:
+            count = all_neighbours(grid, steps, index, offers)
+        _offer(query, queue, pool, bucket, (index, item, g), count)
+    return bucket, True
 
 
 @kernel(allocates=False, forceinline=True)
-def _behind(move: int) -> int:
-    """Return the neighbours behind a cell that ``move`` reached: a bit for each move.
-
-    The cell before reaches them directly, and for less, whatever the cells cost.
-    """
-    return (0xC2, 0x31, 0xA8, 0x54, 0x8A, 0x46, 0x29, 0x15)[move]
-
-
-@kernel(allocates=False, forceinline=True)
-def _expand(
-    grid: Any,
-    query: Any,
-    queue: Any,
-    pool: Any,
-    bucket: int,
-    row: int,
-    column: int,
-    g: int,
-    behind: int,
-    best: int,
-) -> int:
-    """Offer g + edge to the neighbours that are not ``behind``; return the goal's g.
+def _offer(
+    query: Any, queue: Any, pool: Any, bucket: int, cell: Any, count: int
+) -> None:
+    """Offer g + edge to the first ``count`` of ``offers``; ``cell`` is index, item, g.
 
     Where the heuristic falls by more than a step costs, the bound of the cell that is
     expanded also holds for its neighbours (pathmax, Mérő 1984).
     """
-    cost, stride, straight, diagonal = grid
-    records, base = query.records, query.base
-    steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
-    rows = (-1, 1, 0, 0, -1, -1, 1, 1)
-    columns = (0, 0, -1, 1, -1, 1, -1, 1)
-    index = row * stride + column
-    orthogonal = (
-        straight[cost[np.uint64(index - stride)]],
-        straight[cost[np.uint64(index + stride)]],
-        straight[cost[np.uint64(index - 1)]],
-        straight[cost[np.uint64(index + 1)]],
-    )
-    for k in range(8):
-        if behind >> k & 1:
+    index, item, g = cell
+    records, best = query.records, query.best
+    for i in range(count):
+        move = query.offers[np.uint64(i), 0]
+        g_new = g + query.offers[np.uint64(i), 1]
+        reached = np.uint64(index + query.steps[np.uint64(move)])
+        record = query.base | ((_G_MASK - g_new) << 4) | move
+        if record <= (records[reached] | 15):
             continue
-        reached = np.uint64(index + steps[k])
-        if k < 4:
-            edge = orthogonal[k]
-        elif orthogonal[(k - 4) >> 1] == 0 or orthogonal[2 + (k & 1)] == 0:
+        item_new = item + query.item_steps[np.uint64(move)]
+        f = g_new + _to_goal(query, item_new)
+        if f >= best[0]:
             continue
+        records[reached] = record
+        if item_new == query.goal:
+            best[0] = g_new
+        elif f >> queue.shift <= bucket:
+            push_next(pool, queue, bucket, item_new)
         else:
-            edge = diagonal[cost[reached]]
-        candidate = base | ((_G_MASK - g - edge) << 4) | k
-        if edge == 0 or candidate <= (records[reached] | 15):
-            continue
-        row_new, column_new = row + rows[k], column + columns[k]
-        f = g + edge + _to_goal(query, row_new, column_new)
-        if f >= best:
-            continue
-        records[reached] = candidate
-        if row_new == query.goal_row and column_new == query.goal_column:
-            best = g + edge
-        else:
-            at = max(bucket, f >> queue.shift)
-            push(pool, queue, at, (row_new << 16) | column_new)
-    return best
+            push(pool, queue, f >> queue.shift, item_new)
 
 
 @kernel(allocates=False, forceinline=True)
-def _to_goal(query: Any, row: int, column: int) -> int:
+def _index(grid: Any, item: int) -> int:
+    """Return the flat index of an item."""
+    return int((item >> 16) * grid.stride + (item & 0xFFFF))
+
+
+@kernel(allocates=False, forceinline=True)
+def _to_goal(query: Any, item: int) -> int:
     """Return the least cost from a cell of the rimmed grid to the goal.
 
     A path leaves the tile of the cell towards a cheap one, and ends at the goal behind
     the last cheap one: that much of it, at least, is not cheap.
     """
-    least = _octile(row - query.goal_row, column - query.goal_column)
+    row, column = item >> 16, item & 0xFFFF
+    goal_row, goal_column = query.goal >> 16, query.goal & 0xFFFF
+    least = _octile(row - goal_row, column - goal_column)
     if query.excess == 0:
         return least
     away, tile = query.away, np.uint64(TILE)
     here = away[np.uint64(row - 1) // tile, np.uint64(column - 1) // tile]
-    there = away[
-        np.uint64(query.goal_row - 1) // tile, np.uint64(query.goal_column - 1) // tile
-    ]
+    there = away[np.uint64(goal_row - 1) // tile, np.uint64(goal_column - 1) // tile]
     apart = min(least, here + there)
     return least + int(apart * query.excess // 10_000)
 
@@ -291,9 +279,10 @@ def _octile(rows: int, columns: int) -> int:
 
 
 @kernel
-def _trace(records: Any, stride: int, start_index: int, goal_index: int) -> Any:
+def _trace(
+    records: Any, steps: Any, stride: int, start_index: int, goal_index: int
+) -> Any:
     """Return cells (N, 2) of the unrimmed grid, start first."""
-    steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
     count = 1
     index = goal_index
     while index != start_index:

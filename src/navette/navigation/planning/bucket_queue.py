@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 
-USED, FREE, WAITING = 0, 1, 2
+USED, FREE, WAITING, NEXT = 0, 1, 2, 3
 _NEXT = 0x7FFFFFFF
 _MAX_BUCKETS = 1 << 13
 
@@ -24,7 +24,8 @@ class BucketQueue(NamedTuple):
 
     Attributes:
         heads: first entry of each bucket; the number of buckets is a power of two.
-        state: entries ever used, first reusable entry, entries waiting.
+        state: entries ever used, first reusable entry, items waiting, and the item
+            that is popped next if it is known (−1: it is not).
         shift: a bucket spans 2**shift units of priority.
     """
 
@@ -35,7 +36,8 @@ class BucketQueue(NamedTuple):
     @classmethod
     def empty(cls, buckets: int, shift: int) -> "BucketQueue":
         """Return a queue without entries; entry 0 means "none" and is never used."""
-        return cls(np.zeros(buckets, np.int32), np.array([1, 0, 0], np.int64), shift)
+        state = np.array([1, 0, 0, -1], np.int64)
+        return cls(np.zeros(buckets, np.int32), state, shift)
 
     @classmethod
     def spanning(cls, span: int) -> "BucketQueue":
@@ -88,9 +90,29 @@ def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
 
 
 @kernel(allocates=False, forceinline=True)
+def push_next(pool: Any, queue: Any, bucket: int, item: int) -> None:
+    """Add ``item`` to the bucket that is being popped: it is popped next.
+
+    It stays out of the bucket until another one follows, and often never enters it.
+    """
+    state = queue.state
+    before = state[NEXT]
+    state[NEXT] = item
+    if before >= 0:
+        push(pool, queue, bucket, before)
+    else:
+        state[WAITING] += 1
+
+
+@kernel(allocates=False, forceinline=True)
 def pop(pool: Any, queue: Any, bucket: int) -> int:
     """Remove and return the newest item of the bucket, or −1 if it is empty."""
     heads, state = queue.heads, queue.state
+    item = state[NEXT]
+    if item >= 0:
+        state[NEXT] = -1
+        state[WAITING] -= 1
+        return int(item)
     at = np.uint64(bucket & (heads.size - 1))
     slot = heads[at]
     if slot == 0:
