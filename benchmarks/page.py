@@ -68,12 +68,13 @@ WHY = {
 def performance_page(results: dict[str, Any]) -> str:
     """Return the page."""
     benchmarks = list(results["benchmarks"].values())
-    parts = [HEAD, _machine(results["machine"]), _targets(benchmarks)]
+    parts = [HEAD, _machine(results), _targets(benchmarks)]
     parts += [_section(benchmark) for benchmark in benchmarks]
     return "\n".join([*parts, REPEAT])
 
 
-def _machine(machine: dict[str, Any]) -> str:
+def _machine(results: dict[str, Any]) -> str:
+    machine = results["machine"]
     libraries = ", ".join(
         f"{name} {version}"
         for name, version in machine["libraries"].items()
@@ -82,6 +83,18 @@ def _machine(machine: dict[str, Any]) -> str:
     return (
         f"Machine: {machine['cores']} cores, {machine['architecture']}, "
         f"{machine['system']}, Python {machine['python']}; {libraries}.\n"
+        f"{_speed(results['benchmarks'].get('physics'))}"
+    )
+
+
+def _speed(physics: dict[str, Any] | None) -> str:
+    """Return what MuJoCo's own step takes, to compare machines by."""
+    if physics is None:
+        return ""
+    step_ms = physics["cases"][0]["contenders"]["mj_step alone"]["median_ms"]
+    return (
+        f"\nMuJoCo's own step of [the physics benchmark](#physics) takes "
+        f"{shown(step_ms)} on it: divide by that to compare machines.\n"
     )
 
 
