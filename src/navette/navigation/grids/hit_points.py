@@ -51,18 +51,20 @@ def points_from_message(msg: PointCloud2) -> NDArray[np.float64]:
 def _points(msg: PointCloud2, x: int, y: int) -> NDArray[np.float64]:
     """Return the finite points; x and y are at these offsets in each, bytes."""
     rows = np.asarray(msg.data, np.uint8).view(_row_type(x, y, msg.point_step))
-    points: NDArray[np.float64] = _finite(rows["x"], rows["y"])
-    return points
+    points = np.empty((len(rows), 2))
+    points[:, 0], points[:, 1] = rows["x"], rows["y"]
+    return points[: _move_finite(points)]
 
 
-@kernel
-def _finite(x: Any, y: Any) -> Any:
-    points = np.empty((x.size, 2))
+@kernel(allocates=False)
+def _move_finite(points: Any) -> int:
+    """Move the finite points (N, 2) to the front; return how many they are."""
     count = 0
-    for k in range(x.size):
-        points[count, 0], points[count, 1] = x[k], y[k]
-        count += math.isfinite(x[k]) and math.isfinite(y[k])
-    return points[:count]
+    for k in range(points.shape[0]):
+        x, y = points[k, 0], points[k, 1]
+        points[count, 0], points[count, 1] = x, y
+        count += math.isfinite(x) and math.isfinite(y)
+    return count
 
 
 @functools.lru_cache(maxsize=16)
