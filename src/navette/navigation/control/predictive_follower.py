@@ -317,7 +317,15 @@ class PredictiveFollower(BaseFollower):
         first = max(self._first, self._at - _BEHIND)
         reach = self._params.cruise_speed_mps * self._mode.mppi.horizon_s + 0.5
         stop = int(path.measure.searchsorted(path.measure[self._at] + reach)) + 1
-        return PathWindow(*(column[first:stop] for column in path))
+        near = slice(first, stop)
+        return PathWindow(
+            path.x[near],
+            path.y[near],
+            path.cos[near],
+            path.sin[near],
+            path.measure[near],
+            path.direction[near],
+        )
 
     def _arrived(self, path: PathWindow, inputs: FollowerInputs) -> bool:
         off = math.hypot(path.x[-1] - inputs.pose.x, path.y[-1] - inputs.pose.y)

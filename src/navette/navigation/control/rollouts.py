@@ -307,7 +307,7 @@ def _near_obstacles(
     Rows 0-3 of ``near`` get u, v (cells), cosine and sine (cells per metre), ``index``
     the samples; ``cells`` is overwritten.
     """
-    F = np.float32
+    F: Any = np.float32
     per_metre = F(1.0 / field.resolution)
     left, bottom = F(field.x / field.resolution), F(field.y / field.resolution)
     half_cell = max(field.half_cell_m, 0.5 * field.resolution)
@@ -317,14 +317,14 @@ def _near_obstacles(
     _cells_of(field.distance_m.shape, x, y, per_metre, left, bottom, cells)
     flat = field.distance_m.reshape(-1)
     found = 0
-    for i in range(x.size):  # without a branch, as no processor could predict it
+    for i in range(x.size):  # without a branch: every other one would be mispredicted
         index[found] = i
         found += flat[np.uint32(cells[i])] < needed
     u, v, across, along = near[0], near[1], near[2], near[3]
     for k in range(found):
-        i = np.uint32(index[k])
-        u[k], v[k] = x[i] * per_metre - left, y[i] * per_metre - bottom
-        across[k], along[k] = cos[i] * per_metre, sin[i] * per_metre
+        of = np.uint32(index[k])
+        u[k], v[k] = x[of] * per_metre - left, y[of] * per_metre - bottom
+        across[k], along[k] = cos[of] * per_metre, sin[of] * per_metre
     return found
 
 
@@ -469,7 +469,7 @@ def _nearest(path: PathTable, pose: Array32, at: Indices, apart: Array32) -> Non
     for i in range(at.size):
         nearest = first = np.uint32(at[i])
         x_i, y_i, cos_i, sin_i = x[i], y[i], cos[i], sin[i]
-        least = np.float32(1e30)
+        least: Any = np.float32(1e30)
         for k in range(count):
             to = first + np.uint32(k)
             there = _squared_distance(
@@ -487,9 +487,10 @@ def _squared_distance(
     px: float, py: float, ps: float, pc: float,
 ) -> float:  # fmt: skip
     """Return the squared distance of two poses, see :func:`_nearest`."""
-    per_turn = np.float32(2.0 * METRES_PER_RADIAN**2)
+    per_turn: Any = np.float32(2.0 * METRES_PER_RADIAN**2)
     dx, dy = x - px, y - py
-    return dy * dy + (dx * dx + (per_turn - per_turn * (sin * ps + cos * pc)))
+    squared: float = dy * dy + (dx * dx + (per_turn - per_turn * (sin * ps + cos * pc)))
+    return squared
 
 
 @kernel(nogil=True, fastmath=True)
