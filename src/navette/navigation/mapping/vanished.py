@@ -28,7 +28,7 @@ _TIMES = 3
 """Least number of scans that passed before a cell is free, against faulty scans."""
 
 
-class Verdict(NamedTuple):
+class PassedCells(NamedTuple):
     """Marked lethal cells (N, 2) without an echo: obstacles that are gone, or not."""
 
     gone: NDArray[np.int64]
@@ -60,7 +60,7 @@ class VanishedCells:
         window: CellWindow,
         beams: ScanBeams,
         resolution_m: float,
-    ) -> Verdict:
+    ) -> PassedCells:
         """Return which obstacles are gone after a scan.
 
         Args:
@@ -74,7 +74,7 @@ class VanishedCells:
         gone, kept, self.pending = _judge(
             marked.cells, marked.middles, window, beams, edge_m, *arrays
         )
-        return Verdict(gone, kept)
+        return PassedCells(gone, kept)
 
 
 @kernel
