@@ -24,6 +24,9 @@ _BEYOND_M = 0.1
 _SAME_M = 0.1
 """An echo within this distance of the points may be one of the same obstacle."""
 
+_CHAINS = 2048
+"""Number of chains of echoes, a power of two."""
+
 ALL_DIRECTIONS = 0xFFFFFFFF
 """Directions of a circle, one per bit."""
 _SECTOR = math.pi / 16
@@ -36,7 +39,10 @@ class ScanBeams(NamedTuple):
         angles: (N,) rad, of the beams with an echo, ascending.
         ranges: (N,) m.
         step: between neighbouring beams, rad.
-        echoes: (N, 2) where they ended, m, by x.
+        echoes: (N, 2) where they ended, m.
+        first: index of the first echo of each chain, −1: none. Squares are twice as
+            wide as _SAME_M; those of one hash have a chain.
+        after: (N,) the next echo of the same chain, −1: none.
         sensor: x, y, m.
         cells: (h, w) of the costmap: 0 to 99 where beams crossed it.
         frame: its geometry.
@@ -46,6 +52,8 @@ class ScanBeams(NamedTuple):
     ranges: Values
     step: float
     echoes: Points
+    first: NDArray[np.int32]
+    after: NDArray[np.int32]
     sensor: tuple[float, float]
     cells: Cells
     frame: GridFrame
@@ -55,7 +63,9 @@ class ScanBeams(NamedTuple):
         cls, hits: Points, sensor: tuple[float, float], cells: Cells, spec: GridSpec
     ) -> "ScanBeams":
         """Args: echoes (N, 2), in the map, m; the sensor there; the costmap."""
-        off = hits - sensor
+        echoes = np.ascontiguousarray(hits)
+        first, after = _chains(echoes)
+        off = echoes - sensor
         angles = np.arctan2(off[:, 1], off[:, 0])
         order = np.argsort(angles)
         angles, ranges = angles[order], np.hypot(off[:, 0], off[:, 1])[order]
@@ -63,7 +73,9 @@ class ScanBeams(NamedTuple):
             angles,
             ranges,
             _median_step(angles),
-            hits[np.argsort(hits[:, 0])],
+            echoes,
+            first,
+            after,
             sensor,
             cells,
             grid_frame(spec),
@@ -79,23 +91,36 @@ def _median_step(angles: Any) -> float:
     return np.median(steps) if steps.size else np.inf
 
 
+@kernel
+def _chains(echoes: Any) -> Any:
+    """Return :class:`ScanBeams`' first and next echo."""
+    first = np.full(_CHAINS, -1, np.int32)
+    after = np.empty(echoes.shape[0], np.int32)
+    for j in range(echoes.shape[0]):
+        chain = _chain(echoes[j, 0], echoes[j, 1])
+        after[j], first[chain] = first[chain], j
+    return first, after
+
+
+@kernel(allocates=False)
+def _chain(x: float, y: float) -> Any:
+    """Return the chain of the square that contains a point."""
+    column, row = math.floor(x / (2 * _SAME_M)), math.floor(y / (2 * _SAME_M))
+    return (row * 73856093 ^ column * 19349663) & (_CHAINS - 1)
+
+
 @kernel(allocates=False)
 def has_echo(x: float, y: float, beams: ScanBeams) -> bool:
     """Return whether an echo may be of the obstacle at a point."""
-    echoes = beams.echoes
-    first, end = 0, echoes.shape[0]
-    while first < end:
-        middle = (first + end) // 2
-        if echoes[middle, 0] < x - _SAME_M:
-            first = middle + 1
-        else:
-            end = middle
-    for j in range(first, echoes.shape[0]):
-        dx, dy = echoes[j, 0] - x, echoes[j, 1] - y
-        if dx > _SAME_M:
-            return False
-        if dx * dx + dy * dy < _SAME_M * _SAME_M:
-            return True
+    for side in range(4):  # the squares about the point
+        at_x = x - _SAME_M if side % 2 else x + _SAME_M
+        at_y = y - _SAME_M if side // 2 else y + _SAME_M
+        j = beams.first[_chain(at_x, at_y)]
+        while j >= 0:
+            dx, dy = beams.echoes[j, 0] - x, beams.echoes[j, 1] - y
+            if dx * dx + dy * dy < _SAME_M * _SAME_M:
+                return True
+            j = beams.after[j]
     return False
 
 
