@@ -30,6 +30,7 @@ from navette.runtime.network import (
     join_network,
 )
 from navette.runtime.overrides import ParameterOverrides, ParameterOwner
+from navette.runtime.planar_odometry import SharedPlanarOdometry
 from navette.transports import InProcessTransport
 
 _log = logging.getLogger(__name__)
@@ -80,6 +81,7 @@ class Context(HasHandle):
         self.log = LogHub(self.loop)
         self.arguments = RosArguments()
         self.input_checks = SharedInputChecks()
+        self.planar_odometry = SharedPlanarOdometry()
         #: The nodes, oldest first (typed Any because Node imports this module).
         self.nodes: list[Any] = []
         #: The executor of module-level ``spin``; created on demand.

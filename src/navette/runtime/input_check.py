@@ -24,6 +24,8 @@ _NS_PER_S = 1_000_000_000
 _NORMS_SQUARED = (0.9**2, 1.1**2)
 
 Check = Callable[[Any], None]
+Fault = Callable[[Any], InvalidInputError]
+"""Returns what is wrong with a part of a message."""
 
 
 @cache
@@ -248,7 +250,7 @@ class _Rule(NamedTuple):
     """Condition of a usable part ``p`` of a message, and what is wrong with another."""
 
     usable: str
-    fault: Callable[[Any], InvalidInputError]
+    fault: Fault
 
 
 def _within(*names: str) -> str:

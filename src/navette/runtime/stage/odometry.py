@@ -4,16 +4,15 @@ import math
 from collections import deque
 
 from navette.errors import InvalidInputError
-from navette.geometry import Pose2, Transform3, advanced, angle_difference, yaw_of
+from navette.geometry import Pose2, Transform3, advanced, angle_difference
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
+from navette.runtime.planar_odometry import HERE, REST, PlanarOdometry
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import Buffer, TransformException, TransformListener
-from navette.runtime.time import stamp_to_ns
 
-_HERE = Pose2(0.0, 0.0, 0.0)
 _LONGEST_PREDICTION_S = 0.25
 # A pose this far from the one before: the robot was carried to another place.
 _CARRIED_M = 1.0
@@ -55,15 +54,15 @@ class PoseTracker:
         self._node = node
         self._topic = topic
         self._history_ns = round(history_s * 1e9)
-        self._history: deque[tuple[int, Pose2]] = deque()  # odom_T_base by stamp
+        self._history: deque[PlanarOdometry] = deque()
+        self._shared_odometry = node.context.planar_odometry
         self._odom_frame = ""
-        self._map_T_odom = _HERE
-        self._latest = _HERE  # map_T_base of the newest in the history
+        self._map_T_odom = HERE
+        self._latest = HERE  # map_T_base of the newest in the history
         #: Number of jumps of map_T_odom: what was placed in the map before, such as a
         #: path or obstacles, has to be placed again.
         self.jumps = 0
-        self._velocity = (0.0, 0.0)
-        self._side_speed = 0.0
+        self._motion = REST
         self._first: Pose2 | None = None  # odom_T_base
         # Received only if odometry needs moving transforms.
         self._on_invalid = node.drop_input if isinstance(node, StageNode) else None
@@ -88,62 +87,59 @@ class PoseTracker:
     @property
     def stamp_ns(self) -> int | None:
         """The stamp of :attr:`latest`."""
-        return self._history[-1][0] if self._history else None
+        return self._motion.stamp_ns if self._history else None
 
     @property
     def velocity(self) -> tuple[float, float]:
         """Forward speed of the base (m/s) and turn rate (rad/s)."""
-        return self._velocity
+        return self._motion.speed, self._motion.turn_rate
 
     @property
     def side_speed(self) -> float:
         """Speed of the base to the left (m/s)."""
-        return self._side_speed
+        return self._motion.side_speed
 
     def update(self, odometry: Odometry) -> bool:
-        """Use a message; return False if it is unusable, and log the reason."""
-        header, pose, twist = odometry.header, odometry.pose.pose, odometry.twist.twist
+        """Use a message that is not changed any more.
+
+        Return False if it is unusable, and log the reason.
+        """
+        frame_id = odometry.header.frame_id
         child_T_base = self._base_in(odometry.child_frame_id)
-        map_T_odom = self._odom_in_map(header.frame_id)
+        map_T_odom = self._odom_in_map(frame_id)
         if child_T_base is None or map_T_odom is None:
             return False
-        position, q = pose.position, pose.orientation
-        odom_T_base = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
-        linear, turn_rate = twist.linear, twist.angular.z
-        speed, side_speed = linear.x, linear.y
-        if child_T_base is not _HERE:
-            odom_T_base = odom_T_base @ child_T_base
-            velocity = speed, side_speed, turn_rate
-            speed, side_speed = _velocity_of_base(*velocity, child_T_base)
-        on_map = odom_T_base if map_T_odom is _HERE else map_T_odom @ odom_T_base
+        motion = self._shared_odometry.of(odometry, child_T_base)
+        odom_T_base = motion.odom_T_base
+        on_map = odom_T_base if map_T_odom is HERE else map_T_odom @ odom_T_base
         if not _is_near(on_map):
             self._drop_pose(on_map)
             return False
-        if header.frame_id != self._odom_frame:
-            self._odom_frame = header.frame_id
+        if frame_id != self._odom_frame:
+            self._odom_frame = frame_id
             self._history.clear()
-        self._store(stamp_to_ns(header.stamp), odom_T_base, on_map, map_T_odom)
-        self._velocity, self._side_speed = (speed, turn_rate), side_speed
+        self._store(motion, on_map, map_T_odom)
         return True
 
     def pose_at(self, stamp_ns: int) -> Pose2 | None:
         """Return map_T_base, interpolated at a stamp; None outside the history."""
         history = self._history
-        if not history or not history[0][0] <= stamp_ns <= history[-1][0]:
+        if not history or not history[0].stamp_ns <= stamp_ns <= history[-1].stamp_ns:
             return None
-        index = len(history)
-        while history[index - 1][0] > stamp_ns:  # stamps are those of the last messages
+        # From the end: the stamps are those of the last messages.
+        index = len(history) - 1
+        while history[index].stamp_ns > stamp_ns:
             index -= 1
-        before_ns, before = history[index - 1]
+        before_ns, before, *_ = history[index]
         if before_ns == stamp_ns:
             return self._on_map(before)
-        after_ns, after = history[index]
+        after_ns, after, *_ = history[index + 1]
         share = (stamp_ns - before_ns) / (after_ns - before_ns)
         return self._on_map(before.interpolate(after, share))
 
     def in_odom(self, map_T_base: Pose2) -> Pose2:
         """Return odom_T_base of a pose: continuous, for lengths of motions."""
-        if self._map_T_odom is _HERE:
+        if self._map_T_odom is HERE:
             return map_T_base
         return self._map_T_odom.inverse() @ map_T_base
 
@@ -154,12 +150,11 @@ class PoseTracker:
         """
         if not self._history:
             return None
-        latest_ns = self._history[-1][0]
+        latest_ns, _, speed, side_speed, turn_rate = self._motion
         if stamp_ns <= latest_ns:
             return self.pose_at(stamp_ns)
         seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
-        speed, turn_rate = self._velocity
-        return advanced(self._latest, speed, turn_rate, seconds, side=self._side_speed)
+        return advanced(self._latest, speed, turn_rate, seconds, side=side_speed)
 
     def predicted_now(self, now_ns: int) -> Pose2 | None:
         """Return map_T_base now, or that of odometry stamped ahead of the clock."""
@@ -184,7 +179,7 @@ class PoseTracker:
         the pose of the odometry.
         """
         if frame_id == self.map_frame:
-            return _HERE
+            return HERE
         if frame_id == self.base_frame:
             return self.latest
         try:
@@ -200,27 +195,24 @@ class PoseTracker:
     def reset(self) -> None:
         """Delete the history: a new run, or a jump backward in time."""
         self._history.clear()
-        self._velocity = (0.0, 0.0)
-        self._side_speed = 0.0
+        self._motion = REST
 
     def _on_map(self, odom_T_base: Pose2) -> Pose2:
         """Return map_T_base; the same numbers if both frames are one."""
-        if self._map_T_odom is _HERE:
+        if self._map_T_odom is HERE:
             return odom_T_base
         return self._map_T_odom @ odom_T_base
 
-    def _store(
-        self, stamp_ns: int, odom_T_base: Pose2, on_map: Pose2, map_T_odom: Pose2
-    ) -> None:
-        history = self._history
-        if history and stamp_ns <= history[-1][0]:
-            if stamp_ns == history[-1][0]:
+    def _store(self, motion: PlanarOdometry, on_map: Pose2, map_T_odom: Pose2) -> None:
+        history, stamp_ns, odom_T_base = self._history, motion[0], motion[1]
+        if history and stamp_ns <= history[-1].stamp_ns:
+            if stamp_ns == history[-1].stamp_ns:
                 history.pop()
             else:
                 history.clear()  # time jumped backward
         was_carried = True
         if history:
-            before = history[-1][1]
+            before = history[-1].odom_T_base
             moved = math.hypot(odom_T_base.x - before.x, odom_T_base.y - before.y)
             was_carried = moved > _CARRIED_M
         if map_T_odom is not self._map_T_odom:
@@ -233,9 +225,9 @@ class PoseTracker:
                 was_carried |= moved > _CARRIED_M
         if was_carried:
             self._first = odom_T_base
-        history.append((stamp_ns, odom_T_base))
-        self._latest = on_map
-        while history[0][0] < stamp_ns - self._history_ns:
+        history.append(motion)
+        self._motion, self._latest = motion, on_map
+        while history[0].stamp_ns < stamp_ns - self._history_ns:
             history.popleft()
 
     def _base_in(self, child: str) -> Pose2 | None:
@@ -250,7 +242,7 @@ class PoseTracker:
     def _odom_in_map(self, frame: str) -> Pose2 | None:
         """Return the newest map_T_odom."""
         if frame == self.map_frame:
-            return _HERE
+            return HERE
         try:
             transform = self.buffer.lookup(self.map_frame, frame, 0)
         except TransformException as error:
@@ -300,24 +292,11 @@ class PoseTracker:
 
 
 def _plain(pose: Pose2) -> Pose2:
-    """Return ``_HERE`` itself for the identity, which is not multiplied with."""
-    return _HERE if pose == _HERE else pose
+    """Return ``HERE`` itself for the identity, which is not multiplied with."""
+    return HERE if pose == HERE else pose
 
 
 def _is_near(pose: Pose2) -> bool:
     """Whether cells and distances can be computed with it; not if it is not finite."""
     x, y, yaw = pose
     return -FARTHEST <= x <= FARTHEST and -FARTHEST <= y <= FARTHEST and yaw == yaw
-
-
-def _velocity_of_base(
-    vx: float, vy: float, omega: float, child_T_base: Pose2
-) -> tuple[float, float]:
-    """Return the speed forward and to the left of the base.
-
-    v_base = v_child + ω × p (rigid body), rotated into the base's axes.
-    """
-    x, y, yaw = child_T_base
-    along, across = vx - omega * y, vy + omega * x
-    c, s = math.cos(yaw), math.sin(yaw)
-    return c * along + s * across, c * across - s * along
