@@ -21,6 +21,8 @@ from navette.navigation.grids.spec import (
 # Change of range per distance between neighbouring beams on a wall met at 10°.
 _STEEPEST = 1.0 / math.tan(math.radians(10.0))
 
+_UNIT = 4294967296.0  # of the fixed-point numbers with 32 binary places
+
 
 class _Beams(NamedTuple):
     """One scan for the kernel: (x, y) of the sensor, arrays per beam, limits."""
@@ -202,7 +204,7 @@ def _fixed(cells: float, size: int) -> int:
     Stepping integers needs no conversion and no test for each cell.
     """
     least = 1 << 16
-    return min(max(int(cells * 4294967296.0), least), (size << 32) - least)
+    return min(max(int(cells * _UNIT), least), (size << 32) - least)
 
 
 @kernel(allocates=False)
@@ -250,15 +252,15 @@ def _free_line(
     if across > along:
         across, along = along, across
         minor, major = major, minor
+    # Cells moved across, in fixed point and rounded up: exact for up to 2¹⁵ cells,
+    # since fractions are multiples of 1 / along.
+    scale = _UNIT / max(along, 1)
+    crossed, slope = int(along // 2 * scale) + 1, int(across * scale) + 1
     at = r0 * width + c0
-    error = along // 2
     for _ in range(int(share * along + 0.5)):
-        flat[np.uintp(at)] = FREE
+        flat[np.uintp(at + (crossed >> 32) * minor)] = FREE
         at += major
-        error += across
-        if error >= along:
-            at += minor
-            error -= along
+        crossed += slope
     # The last cell: free without a hit; with one, overwritten as lethal afterwards.
     if share >= 1.0:
-        flat[np.uintp(at)] = FREE
+        flat[np.uintp(r1 * width + c1)] = FREE

@@ -78,6 +78,20 @@ def test_cells_equal_the_plain_definition(yaw) -> None:
         np.testing.assert_array_equal(cost, expected)
 
 
+def test_long_lines_equal_the_plain_definition() -> None:
+    rng = np.random.default_rng(6)
+    spec = GridSpec(1.0, 20_000, 300, Pose2(0.0, 0.0, 0.0))
+    sensor = spec.center_of(7, 3)
+    ends = np.column_stack([rng.uniform(9e3, 2e4, 12), rng.uniform(8.0, 299.0, 12)])
+    away = ends - sensor
+    ranges = np.hypot(*away.T).astype(np.float32)
+    directions = away / ranges[:, None]
+    cost = unknown(spec)
+    trace_beams(cost, spec, sensor, directions, ranges, range_min=0.1, range_max=1e5)
+    expected = oracle(spec, sensor, directions, ranges, 0.1, 1e5)
+    np.testing.assert_array_equal(cost, expected)
+
+
 def test_free_up_to_the_hit_and_unknown_beyond() -> None:
     row = trace([1.05])[25]
     assert row.tolist() == [-1] * 30 + [0] * 10 + [100] + [-1] * 19
