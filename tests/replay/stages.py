@@ -77,7 +77,7 @@ STAGES = (
             "/tf_static",
         ),
         outputs=("/cmd_vel_nav", "/control/status"),
-        duration_s=7.5,
+        duration_s=7.0,
         tolerances=("/cmd_vel_nav=1e-6",),
     ),
 )

@@ -23,6 +23,7 @@ _SLOWEST = 0.3  # least share of the speed at low clearance or a heading error
 _ALIGNED = 0.95  # cosine of a heading error that hardly slows the robot down
 _PREVIEW_S = 0.15  # delay of the drive
 _STOP_SHARE = 0.3  # of the goal tolerance: distance at which a piece is complete
+_ROUNDING_MPS = 1e-9
 
 
 class PieceDrive:
@@ -132,6 +133,8 @@ class PieceDrive:
             (approach_speed(left, speed, params), LimitedBy.PATH_END),
         ]
         v, cause = min(limits)
+        if cause is LimitedBy.BEND and self._cruise - v < _ROUNDING_MPS:
+            cause = LimitedBy.NONE  # the profile of a straight stretch, rounded
         aligned = math.cos(self.at.heading_error)
         v *= max(_SLOWEST, aligned)
         if aligned < _ALIGNED:
