@@ -17,9 +17,9 @@ from navette.navigation.grids.collision_check import (
     MovingBody,
 )
 from navette.navigation.grids.compare import Changes, compare
-from navette.navigation.grids.distance import (
+from navette.navigation.grids.distance import distance_field
+from navette.navigation.grids.distance_levels import (
     DistanceLevels,
-    distance_field,
     distance_levels,
     level_metres,
     level_type,

@@ -10,7 +10,7 @@ from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
 from navette.geometry import Footprint
 from navette.navigation.grids.checks import grid_array, kernel_array
-from navette.navigation.grids.distance import DistanceLevels, level_type
+from navette.navigation.grids.distance_levels import DistanceLevels, level_type
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
 
 # Of a cell, in cells: an obstacle may fill its cell to the corners.

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.navigation.grids import CellWindow, level_metres
-from navette.navigation.grids.distance import (
+from navette.navigation.grids.distance_levels import (
     MAX_LEVEL_RADIUS,
     PART,
     Parts,

@@ -25,7 +25,7 @@ from navette.navigation.grids import (
     mark_points,
     sparse_zeros,
 )
-from navette.navigation.grids.distance import all_parts
+from navette.navigation.grids.distance_levels import all_parts
 from navette.navigation.planning.cell_costs import CellCosts
 from navette.navigation.planning.cheap_tiles import TILE, CheapTiles
 from navette.navigation.planning.obstacle_cells import update_obstacles

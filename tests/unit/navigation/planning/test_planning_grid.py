@@ -9,7 +9,7 @@ from planning_worlds import COURSE_FOOTPRINT, empty_map, fill
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec, distance_levels
-from navette.navigation.grids.distance import all_parts
+from navette.navigation.grids.distance_levels import all_parts
 from navette.navigation.planning import path_shape
 from navette.navigation.planning.cheap_tiles import CheapTiles
 from navette.navigation.planning.footprint_check import check_path
