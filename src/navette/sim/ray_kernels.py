@@ -226,7 +226,9 @@ def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
 
 
 @kernel(allocates=False, inline="never")
-def _bearing_of_box(hx, hy, hz, m, c):  # type: ignore[no-untyped-def]
+def _bearing_of_box(  # type: ignore[no-untyped-def]
+    hx, hy, hz, m, c
+) -> tuple[float, float]:
     """Centre and half width (rad) of the angles between a box's corners.
 
     A circle around a long wall would cover several times as many beams.
@@ -269,7 +271,7 @@ def _cast_beams(  # type: ignore[no-untyped-def]
 @kernel(allocates=False, inline="never", error_model="numpy")
 def _cast_at_box(  # type: ignore[no-untyped-def]
     size, ox, oy, oz, m, cosines, sines, nearest
-):
+) -> None:
     """As :func:`_hit_box`, without branches: four beams at once (SIMD).
 
     Along a face, a beam beside the box meets it beyond every reach instead of nowhere.

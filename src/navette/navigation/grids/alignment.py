@@ -83,7 +83,9 @@ def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]
 
 
 @kernel(allocates=False)
-def _limits(start: float, step: float, size: int, low: float, high: float) -> Any:
+def _limits(
+    start: float, step: float, size: int, low: float, high: float
+) -> tuple[float, float]:
     """[low, high] narrowed to the t with 0 <= start + t · step < size."""
     if abs(step) < 1e-12:
         if 0.0 <= start < size:

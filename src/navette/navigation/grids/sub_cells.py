@@ -219,7 +219,7 @@ def _bits(mask: Any) -> int:
 
 
 @kernel(allocates=False)
-def _from_cells(u: float, v: float, frame: Any) -> Any:
+def _from_cells(u: float, v: float, frame: Any) -> tuple[float, float]:
     """Return the position, m, of u, v in cells."""
     u, v = u * frame.resolution, v * frame.resolution
     x = frame.x + frame.cos * u - frame.sin * v

@@ -103,7 +103,7 @@ def _chains(echoes: Any) -> Any:
 
 
 @kernel(allocates=False)
-def _chain(x: float, y: float) -> Any:
+def _chain(x: float, y: float) -> int:
     """Return the chain of the square that contains a point."""
     column, row = math.floor(x / (2 * _SAME_M)), math.floor(y / (2 * _SAME_M))
     return (row * 73856093 ^ column * 19349663) & (_CHAINS - 1)
@@ -125,7 +125,9 @@ def has_echo(x: float, y: float, beams: ScanBeams) -> bool:
 
 
 @kernel(allocates=False)
-def possible_directions(x: float, y: float, edge_m: float, beams: ScanBeams) -> Any:
+def possible_directions(
+    x: float, y: float, edge_m: float, beams: ScanBeams
+) -> np.uint32:
     """Return in which directions from a point a post may be after a scan.
 
     Args:
@@ -157,7 +159,7 @@ def possible_directions(x: float, y: float, edge_m: float, beams: ScanBeams) -> 
 
 
 @kernel(allocates=False)
-def _left(bearing: float, off: float, away: float, reach: float) -> Any:
+def _left(bearing: float, off: float, away: float, reach: float) -> np.uint32:
     """Return the directions that a beam at an angle ``off`` to a point leaves."""
     aside = away * abs(math.sin(off)) + (_BEAM_ERROR_M + _BEAM_ERROR_RAD * away)
     if aside >= RADIUS_M:

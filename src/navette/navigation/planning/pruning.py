@@ -129,9 +129,10 @@ def _is_level(cost: Any, steps: Any, index: int, move: int) -> bool:
 
 
 @kernel(allocates=False, forceinline=True)
-def _cost(cost: Any, steps: Any, index: int, move: int) -> Any:
+def _cost(cost: Any, steps: Any, index: int, move: int) -> int:
     """Return the cost of the cell that a move, modulo 8, leads to."""
-    return cost[np.uint64(index + steps[np.uint64(move & 7)])]
+    there: int = cost[np.uint64(index + steps[np.uint64(move & 7)])]
+    return there
 
 
 @kernel(allocates=False, forceinline=True)
