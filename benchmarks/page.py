@@ -6,8 +6,8 @@ from typing import Any
 from harness import shown
 
 NOISE = 1.15
-# Facts: measured once, beside sources that are not in this repository.
-NAV2 = Path(__file__).with_name("nav2.md")
+# Facts: measured once, beside sources and code that are not in this repository.
+ONCE = Path(__file__).with_name("measured_once.md")
 
 HEAD = """# Performance
 
@@ -67,7 +67,7 @@ def performance_page(results: dict[str, Any]) -> str:
     benchmarks = list(results["benchmarks"].values())
     parts = [HEAD, _machine(results), _targets(benchmarks)]
     parts += [_section(benchmark) for benchmark in benchmarks]
-    return "\n".join([*parts, NAV2.read_text(encoding="utf-8"), REPEAT])
+    return "\n".join([*parts, ONCE.read_text(encoding="utf-8"), REPEAT])
 
 
 def _machine(results: dict[str, Any]) -> str:
