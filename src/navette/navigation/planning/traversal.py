@@ -139,7 +139,7 @@ def _inside_rim(rimmed: NDArray[np.uint8]) -> NDArray[np.uint8]:
 def rim_of(cost: NDArray[np.uint8]) -> NDArray[np.uint8] | None:
     """Return the array (H + 2, W + 2) with a lethal rim that ``cost`` is a part of.
 
-    None: there is no such array.
+    None without such an array.
     """
     whole = cost.base
     if not isinstance(whole, np.ndarray) or not whole.flags.c_contiguous:
