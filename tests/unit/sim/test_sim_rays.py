@@ -1,6 +1,7 @@
 """Compiled ray casting against MuJoCo's own."""
 
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -62,6 +63,26 @@ def _tilted(rng: np.random.Generator) -> Mount:
     return Mount(0, pose)  # body 0 is the world
 
 
+def _check_fan(
+    model: Any, data: Any, mount: Mount, angles: np.ndarray, limit_m: float
+) -> None:
+    """Compare a fan of beams of up to 30 m with MuJoCo's, of up to the limit."""
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    origin, rotation = mount.world(data)
+    ours = np.empty(len(angles))
+    cast_fan(
+        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
+        angles, np.stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
+    )  # fmt: skip
+    beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    theirs, _ = shapes.cast_with_mujoco(
+        model, data, origin, beams @ rotation.T, limit_m
+    )
+    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize(
     ("first", "last"),
@@ -70,19 +91,8 @@ def _tilted(rng: np.random.Generator) -> Mount:
 def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     simulator = Simulator(_random_scene(seed))
     model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
-    mujoco.mj_kinematics(model, data)
-    shapes = ShapeTable(model, (0, 1))
-    shapes.update(data)
-    origin, rotation = _tilted(np.random.default_rng(seed)).world(data)
-    angles = np.linspace(first, last, 181)
-    ours = np.empty(len(angles))
-    cast_fan(
-        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
-        angles, np.stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
-    )  # fmt: skip
-    beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-    theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, np.inf)
-    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+    mount = _tilted(np.random.default_rng(seed))
+    _check_fan(model, data, mount, np.linspace(first, last, 181), np.inf)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -97,20 +107,9 @@ def test_fans_between_walls_equal_mujocos(seed: int) -> None:
     scene = world.scene().with_robot(load_robot("turtlebot3_burger").model)
     compiled = compile_scene(scene, timestep_s=0.005)
     model, data = compiled.model, mujoco.MjData(compiled.model)
-    mujoco.mj_kinematics(model, data)
-    shapes = ShapeTable(model, (0, 1))
-    shapes.update(data)
     tilt = quaternion_from_rpy(*rng.uniform(-1e-3, 1e-3, 2).tolist(), 0.0)
-    origin, rotation = Mount(0, Transform3((0.0, 0.0, 0.3), tilt)).world(data)
-    angles = np.linspace(-np.pi, np.pi, 361)
-    ours = np.empty(len(angles))
-    cast_fan(
-        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
-        angles, np.stack([np.cos(angles), np.sin(angles)]), 30.0, ours,
-    )  # fmt: skip
-    beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-    theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, 30.0)
-    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+    mount = Mount(0, Transform3((0.0, 0.0, 0.3), tilt))
+    _check_fan(model, data, mount, np.linspace(-np.pi, np.pi, 361), 30.0)
 
 
 @pytest.mark.parametrize("seed", range(6))

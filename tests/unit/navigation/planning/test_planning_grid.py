@@ -188,6 +188,15 @@ def test_from_a_start_without_margin_the_clearance_must_not_decrease() -> None:
     assert not check_path(back_in, grid, BODY).fits, "once out, the margin holds"
 
 
+def random_params(rng: np.random.Generator) -> PlannerParams:
+    return PlannerParams(
+        footprint_m=COURSE_FOOTPRINT,
+        unknown_cost=float(rng.choice([0.0, 0.25, 3.0])),
+        map_cost_weight=float(rng.choice([0.0, 2.0])),
+        allow_unknown=bool(rng.random() < 0.7),
+    )
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -199,12 +208,7 @@ def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) 
     known = rng.choice(np.array([UNKNOWN, 0, 40, 100], np.int8), spec.shape)
     occupancy[:] = UNKNOWN
     occupancy[part] = known[part]
-    params = PlannerParams(
-        footprint_m=COURSE_FOOTPRINT,
-        unknown_cost=float(rng.choice([0.0, 0.25, 3.0])),
-        map_cost_weight=float(rng.choice([0.0, 2.0])),
-        allow_unknown=bool(rng.random() < 0.7),
-    )
+    params = random_params(rng)
     grid = planning_grid(occupancy, spec, BODY, params)
     level = distance_levels(grid.obstacles, grid.distances.metres)
     cost = np.zeros(spec.shape, np.uint8)
@@ -221,12 +225,7 @@ def test_a_map_that_is_known_in_part_gives_the_grid_of_all_its_cells(seed: int) 
 def test_a_changed_map_gives_the_grid_of_a_new_one(seed: int) -> None:
     rng = np.random.default_rng(seed)
     occupancy, spec = empty_map(12, 8)
-    params = PlannerParams(
-        footprint_m=COURSE_FOOTPRINT,
-        unknown_cost=float(rng.choice([0.0, 0.25, 3.0])),
-        map_cost_weight=float(rng.choice([0.0, 2.0])),
-        allow_unknown=bool(rng.random() < 0.7),
-    )
+    params = random_params(rng)
     grid = planning_grid(occupancy, spec, BODY, params)
     values = np.array([UNKNOWN, 0, 40, 100], np.int8)
     for _ in range(8):
