@@ -22,8 +22,6 @@ def local_field(
     resolution: float,
     reach_m: float,
     half_cell_m: float = 0.0,
-    *,
-    exact_m: float = math.inf,
 ) -> LocalField:
     """Return the distance field of obstacle points (N, 2), map frame, m.
 
@@ -33,15 +31,11 @@ def local_field(
         reach_m: the largest distance of the field, beyond which an obstacle makes no
             difference.
         half_cell_m: radius of each point.
-        exact_m: positions of points are rounded as float32 rounds this distance.
     """
     if not len(points):
         return open_field()
     distance, x, y = _measure(
-        np.ascontiguousarray(points, np.float64),
-        resolution,
-        min(exact_m, reach_m),
-        reach_m,
+        np.ascontiguousarray(points, np.float64), resolution, reach_m
     )
     return LocalField(distance, x, y, float(resolution), half_cell_m)
 
@@ -52,7 +46,7 @@ def open_field() -> LocalField:
 
 
 @kernel
-def _measure(points: Any, resolution: float, exact_m: float, reach_m: float) -> Any:
+def _measure(points: Any, resolution: float, reach_m: float) -> Any:
     """Return the distances (H, W), m, and the corner of the first cell."""
     margin = math.ceil(reach_m / resolution) + 2
     low_x = high_x = points[0, 0]
@@ -64,29 +58,26 @@ def _measure(points: Any, resolution: float, exact_m: float, reach_m: float) -> 
     # A span from any cell near a point on ends within the row.
     width = int((high_x - x) / resolution) + margin + _SPAN
     height = int((high_y - y) / resolution) + margin
-    reach, exact = reach_m / resolution, math.ceil(exact_m / resolution)
+    reach = reach_m / resolution
     field = np.full((height, width), np.float32(reach * reach))
     for n in range(points.shape[0]):
         u, v = (points[n, 0] - x) / resolution, (points[n, 1] - y) / resolution
-        _lower(field, u - 0.5, v - 0.5, reach, exact)
+        _lower(field, u - 0.5, v - 0.5, reach)
     _to_metres(field.reshape(-1), np.float32(resolution))
     return field, x, y
 
 
 @kernel(allocates=False)
-def _lower(square: Any, u: float, v: float, reach: float, exact: int) -> None:
+def _lower(square: Any, u: float, v: float, reach: float) -> None:
     """Lower the squared distances around a point, from the centres of the cells."""
-    column = int(u)
-    # Rounded once: differences from columns within ``exact`` cells are then exact.
-    offset = np.float32(u - column + exact) - np.float32(exact)
     # The number of columns is known at compile time: four times as fast.
     for first in range(int(u - reach) + 1, int(u + reach) + 1, _SPAN):
-        ahead = np.float32(column - first)
+        du = np.float32(u - first)
         for i in range(int(v - reach) + 1, int(v + reach) + 1):
             dv = np.float32(v - i)
             line = square[np.uintp(i)]
             for k in range(_SPAN):
-                away = offset + (ahead - np.float32(k))
+                away = du - np.float32(k)
                 there = away * away + dv * dv
                 at = np.uintp(first + k)
                 before = line[at]

@@ -93,7 +93,6 @@ class PredictiveFollower(BaseFollower):
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._body_reach_m = RolloutBody.of(self._body).reach_m
-        self._largest_disc_m = float(self._body[:, 2].max())
         self._calm = _Mode.of(params, self._body, swerves=False)
         self._evasive = _Mode.of(evasive(params), self._body, swerves=True)
         self._mode = self._calm
@@ -151,14 +150,12 @@ class PredictiveFollower(BaseFollower):
         unseen: NDArray[np.float64] = NONE_UNSEEN,
     ) -> None:
         super().set_obstacles(points, half_cell, unseen)
-        clearance_m = self._params.mppi_clearance_m
+        reach_m = self._params.mppi_clearance_m + self._body_reach_m + _FIELD_MARGIN_M
         self._field = local_field(
             points,
             _CELL_M,
-            clearance_m + self._body_reach_m + _FIELD_MARGIN_M,
+            reach_m,
             half_cell,
-            # Where discs of the body are this far away, that still costs.
-            exact_m=clearance_m + self._largest_disc_m + half_cell + 1.5 * _CELL_M,
         )
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:

@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.navigation.grids.obstacle_points import PART, holds_lethal
 from navette.navigation.grids.spec import LETHAL, Cells, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import Masks, Points, points_by_cell
 from navette.navigation.grids.windows import CellWindow
-
-_PART = 64  # cells of a row that are searched at once
 
 
 class MarkedCells(NamedTuple):
@@ -73,14 +72,11 @@ def _lethal_marked(masks: Any, cells: Any, window: CellWindow) -> Any:
     found = np.empty((1024, 2), np.int64)
     count = 0
     for row in range(window.first_row, window.last_row):
-        for first in range(window.first_column, window.last_column, _PART):
-            line = cells[row, first : min(window.last_column, first + _PART)]
-            highest = line[0]
-            for k in range(line.size):  # vectorised: most parts have no lethal cell
-                highest = max(highest, line[k])
-            if highest < LETHAL:
+        for first in range(window.first_column, window.last_column, PART):
+            line = cells[row, first : min(window.last_column, first + PART)]
+            if not holds_lethal(line, LETHAL):
                 continue
-            if count + _PART > found.shape[0]:
+            if count + PART > found.shape[0]:
                 found = np.concatenate((found, np.empty_like(found)))
             for k in range(line.size):
                 if line[k] >= LETHAL and masks[row, first + k] != 0:

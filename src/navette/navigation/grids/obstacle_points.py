@@ -11,7 +11,7 @@ from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.grids.spec import FREE, GridSpec
 
-_PART = 64  # cells of a row that are searched at once
+PART = 64  # cells of a row that are searched at once
 
 
 def obstacle_points(
@@ -55,6 +55,18 @@ def obstacle_points(
     )
 
 
+@kernel(allocates=False)
+def holds_lethal(line: Any, lethal: int) -> bool:
+    """Return whether a part of a row has a lethal cell: most have none.
+
+    This is vectorised, which finding the cells is not.
+    """
+    highest = np.int8(FREE)
+    for k in range(line.size):
+        highest = max(highest, line[k])
+    return bool(highest >= lethal)
+
+
 @kernel
 def _gather(
     cost: Any,
@@ -79,14 +91,11 @@ def _gather(
     c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
     for i in range(top, bottom):
         v = i + 0.5
-        for first in range(left, right, _PART):
-            line = cost[i, first : min(right, first + _PART)]
-            highest = np.int8(FREE)
-            for j in range(line.size):  # vectorised: most parts have no lethal cell
-                highest = max(highest, line[j])
-            if highest < lethal:
+        for first in range(left, right, PART):
+            line = cost[i, first : min(right, first + PART)]
+            if not holds_lethal(line, lethal):
                 continue
-            if count + _PART > points.shape[0]:
+            if count + PART > points.shape[0]:
                 points = np.concatenate((points, np.empty_like(points)))
             for j in range(line.size):
                 u = first + j + 0.5
