@@ -218,7 +218,7 @@ def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
     away = math.hypot(c[0], c[1])
     if abs(c[2]) > ez or away - around > reach:
         return 0.0, -1.0
-    if kind == BOX:
+    if kind == BOX and away > 0.0:
         return _bearing_of_box(hx, hy, hz, m, c)
     if away <= around:
         return 0.0, math.pi

@@ -13,7 +13,7 @@ from navette.sim.build import compile_scene
 from navette.sim.camera import pixel_rays
 from navette.sim.camera_gl import GlCamera, probe
 from navette.sim.mount import Mount
-from navette.sim.ray_kernels import cast_fan, cast_image
+from navette.sim.ray_kernels import BOX, cast_fan, cast_image
 from navette.sim.scene import (
     Box,
     Capsule,
@@ -93,6 +93,23 @@ def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
     mount = _tilted(np.random.default_rng(seed))
     _check_fan(model, data, mount, np.linspace(first, last, 181), np.inf)
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi / 4, 1.0, -2.5])
+@pytest.mark.parametrize("x", [0.0, 1e-12, 0.4])
+def test_fans_from_inside_a_box_meet_its_faces(x: float, yaw: float) -> None:
+    c, s = np.cos(yaw), np.sin(yaw)
+    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    angles, found = np.linspace(-np.pi, np.pi, 181), np.empty(181)
+    cast_fan(
+        np.array([BOX]), np.array([(1.0, 0.5, 1.0)]), np.array([(x, 0.0, 0.0)]),
+        rotation[None].copy(), np.zeros(3), np.eye(3), angles,
+        np.stack([np.cos(angles), np.sin(angles)]), 30.0, found,
+    )  # fmt: skip
+    ends = found * np.stack([np.cos(angles), np.sin(angles)])
+    ends[0] -= x
+    on_box = np.abs(rotation[:2, :2].T @ ends) / [[1.0], [0.5]]
+    np.testing.assert_allclose(on_box.max(axis=0), 1.0, rtol=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -143,7 +143,7 @@ def _elsewhere(
 
 
 class _Query(NamedTuple):
-    """What is asked, and what the search remembers.
+    """Ends and bounds of a query, and the arrays of the search.
 
     Attributes:
         start, goal: items of the open list; see :func:`_item_of`.
