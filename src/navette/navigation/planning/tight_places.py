@@ -108,7 +108,9 @@ class TightPlanner:
         if why is None:
             budget = self.params.max_expansions
             found = self._search(body.loose(slack), margin, budget, reached)
-        return found if found.outcome.has_path else rough
+        # A complete search proves nothing but that no motion leaves the start.
+        unproven = found.outcome in (Outcome.NO_PATH, Outcome.SEARCH_LIMIT)
+        return rough if unproven else found
 
     def why_impossible(self) -> Outcome | None:
         """Return why no motion of the body reaches the goal; None if one may exist.
@@ -124,7 +126,8 @@ class TightPlanner:
         These paths are rough, of shorter motions than the search has, and off the
         cells' centres: they need only the least margin in the end. The first attempt
         keeps the margin wherever in a cell the robot is. ``search_limit``: the motions
-        are too many.
+        are too many, or the body does not fit along those that were found, which
+        proves nothing about others.
         """
         within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
         cells = self._ends()
@@ -141,13 +144,13 @@ class TightPlanner:
                 continue
             for each in (moves, moves._replace(reverses=False)):
                 path = space.drive_to(cells, each, yaw, tolerance)
-                if path.poses is None:
-                    break  # nor is there one without reversing
+                if path.poses is None:  # nor is there one without reversing
+                    outcome = outcome if path.is_proof else Outcome.SEARCH_LIMIT
+                    break
+                outcome = Outcome.SEARCH_LIMIT
                 rough = self._rough_plan(path.poses, min(margin_m, self._least_m))
                 if rough is not None:
                     return rough
-            if not path.is_proof:
-                outcome = Outcome.SEARCH_LIMIT
         return Plan(outcome)
 
     def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:

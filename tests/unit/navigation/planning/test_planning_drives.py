@@ -116,11 +116,8 @@ def test_a_bend_is_an_arc_of_the_length_and_the_turn(
     assert set(directions(poses)) == {math.copysign(1, length_m)}
 
 
-@pytest.mark.parametrize("yaw", [0.0, 1.5])
-def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
-    yaw: float,
-) -> None:
-    """The heading of the passage is none of the search's without a bend first."""
+def planner_before_a_passage() -> Planner:
+    """A car's planner in a room with a passage, 6 cm wide on each side of the body."""
     occupancy, spec = empty_map(8, 8)
     low, high = 3.79, 4.21
     fill(occupancy, spec, (3.0, 5.0), (0.0, low))
@@ -136,10 +133,27 @@ def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
     )
     planner = Planner(params)
     planner.set_map(NewMap(occupancy, spec, np.array(walls)))
+    return planner
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.5])
+def test_a_car_passes_a_long_passage_with_six_centimetres_on_each_side(
+    yaw: float,
+) -> None:
+    """The heading of the passage is none of the search's without a bend first."""
+    planner = planner_before_a_passage()
     found = planner.plan(Pose2(1.5, 4.6, yaw), Goal(6.5, 4.0))
     assert found.outcome.has_path
     assert found.margin_m > 0.02
     assert (turned(found.poses) <= lengths(found.poses) / RADIUS_M + 0.05).all()
+
+
+@pytest.mark.parametrize("yaw_deg", [-10.0, -7.0])
+def test_a_rough_path_that_does_not_fit_proves_nothing(yaw_deg: float) -> None:
+    """Beside the mouth: a longer search may find what all rough motions do not."""
+    start = Pose2(2.5, 3.75, math.radians(yaw_deg))
+    found = planner_before_a_passage().plan(start, Goal(6.5, 4.0))
+    assert found.outcome is not Outcome.NO_PATH
 
 
 def test_a_robot_off_the_middle_of_a_passage_plans_what_the_controller_allows() -> None:
