@@ -26,6 +26,9 @@ _ZENOH = str(Path(__file__).with_name("zenoh"))
 # Calls on closed sessions return at once; a program may begin others for ever.
 _CALLS_S = 2.0
 _POLL_S = 0.001
+# A thread that waits for the interpreter's lock has no frame yet, while it returns from
+# Zenoh: only a pause in which it could run shows it.
+_QUIET_POLLS = 10
 
 _inside: "weakref.WeakSet[threading.Thread]" = weakref.WeakSet()
 _skips_waiting = threading.Event()
@@ -48,9 +51,14 @@ def _wait_for_all() -> None:
     for thread in list(_inside):
         if thread.is_alive():
             thread.join()
+    if "zenoh" not in sys.modules:
+        return
     gc.disable()
+    quiet = 0
     for _ in range(round(_CALLS_S / _POLL_S)):
-        if not (_is_collecting() or any(map(_is_call, sys._current_frames().values()))):
+        is_busy = _is_collecting() or any(map(_is_call, sys._current_frames().values()))
+        quiet = 0 if is_busy else quiet + 1
+        if quiet == _QUIET_POLLS:
             return
         _skips_waiting.wait(_POLL_S)
 
