@@ -126,7 +126,7 @@ class TightPlanner:
         These paths are rough, of shorter motions than the search has, and off the
         cells' centres: they need only the least margin in the end. The first attempt
         keeps the margin wherever in a cell the robot is. ``search_limit``: the motions
-        are too many, or the body does not fit along those that were found, which
+        are too many, or the body does not fit along the paths that were found, which
         proves nothing about others.
         """
         within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
