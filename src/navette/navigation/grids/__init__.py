@@ -69,7 +69,12 @@ from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.regions import SquareRegion
-from navette.navigation.grids.sparse import RowSpans, SparseGrid, sparse_zeros
+from navette.navigation.grids.sparse import (
+    RowSpans,
+    SparseGrid,
+    release_free_memory,
+    sparse_zeros,
+)
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import (
     cell_points,
@@ -93,6 +98,7 @@ __all__ = [
     "NO_CELLS",
     "RowSpans",
     "SparseGrid",
+    "release_free_memory",
     "sparse_zeros",
     "SquareRegion",
     "NO_DISCS",

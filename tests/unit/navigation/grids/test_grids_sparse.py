@@ -1,9 +1,19 @@
 """Arrays of zeros that occupy memory only where they are written."""
 
+import platform
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from navette.navigation.grids import CellWindow, RowSpans, SparseGrid, sparse_zeros
+from navette.navigation.grids import (
+    CellWindow,
+    RowSpans,
+    SparseGrid,
+    release_free_memory,
+    sparse_zeros,
+)
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (8000, 8000)])
@@ -77,3 +87,22 @@ def test_a_cleared_grid_keeps_its_extent() -> None:
     grid.cells[:] = 1
     grid.clear()
     np.testing.assert_array_equal(grid.cells, np.zeros((4, 5), np.uint8))
+
+
+def occupied_mb() -> float:
+    """Return the memory of this process."""
+    status = Path("/proc/self/status").read_text()
+    found = re.search(r"VmRSS:\s+(\d+) kB", status)
+    assert found is not None
+    return int(found[1]) / 1000
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="needs glibc")
+def test_free_memory_between_arrays_returns_to_the_system() -> None:
+    arrays = [np.ones(2000) for _ in range(4000)]  # 64 MB, in the heap
+    kept = arrays[::100]
+    del arrays
+    before_mb = occupied_mb()
+    release_free_memory()
+    assert occupied_mb() < before_mb - 40
+    assert all(each.all() for each in kept)
