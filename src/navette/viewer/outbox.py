@@ -7,6 +7,10 @@ from dataclasses import dataclass, field
 from navette.viewer import replies
 
 Frame = str | bytes
+Parts = list[bytes | memoryview]
+"""A binary frame in parts, which are sent one after another."""
+
+_PART_BYTES = 2**18
 
 
 @dataclass(frozen=True)
@@ -20,8 +24,18 @@ class MessageFrame:
     def __len__(self) -> int:
         return len(self.payload)
 
-    def encode(self) -> bytes:
-        return replies.message_data(self.subscription_id, self.stamp_ns, self.payload)
+    def encode(self) -> bytes | Parts:
+        """Return the frame, in parts if it is long.
+
+        Python runs one thread at a time: copying a large map at once would stop the
+        robot's nodes in the same process.
+        """
+        head = replies.message_head(self.subscription_id, self.stamp_ns)
+        if len(self.payload) <= _PART_BYTES:
+            return head + self.payload
+        view = memoryview(self.payload)
+        starts = range(0, len(view), _PART_BYTES)
+        return [head, *(view[start : start + _PART_BYTES] for start in starts)]
 
 
 class Outbox:
@@ -118,19 +132,18 @@ class Outbox:
             self._data_size -= waiting.size
             self._turns = deque(turn for turn in self._turns if turn != stream)
 
-    def pop(self) -> Frame:
+    def pop(self) -> Frame | Parts:
         """Remove and return the next frame: control frames first, then data.
 
         The frame counts as queued until the next one or :meth:`sent`.
         """
         if self._control:
-            frame = self._control.popleft()
+            frame: Frame | MessageFrame = self._control.popleft()
             self.control_size -= len(frame)
         else:
-            data = self._pop_data()
-            frame = data.encode() if isinstance(data, MessageFrame) else data
+            frame = self._pop_data()
         self._sending = len(frame)
-        return frame
+        return frame.encode() if isinstance(frame, MessageFrame) else frame
 
     def sent(self) -> None:
         """Note that the frame that was removed last has been sent."""

@@ -121,8 +121,9 @@ def unadvertise(channel_ids: Iterable[int]) -> str:
     return _json(op="unadvertise", channelIds=list(channel_ids))
 
 
-def message_data(subscription_id: int, stamp_ns: int, payload: bytes) -> bytes:
-    return struct.pack("<BIQ", 1, subscription_id, _u64(stamp_ns)) + payload
+def message_head(subscription_id: int, stamp_ns: int) -> bytes:
+    """Encode what precedes the payload of messageData."""
+    return struct.pack("<BIQ", 1, subscription_id, _u64(stamp_ns))
 
 
 def time(stamp_ns: int) -> bytes:

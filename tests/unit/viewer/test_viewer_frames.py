@@ -183,7 +183,7 @@ def test_advertise_carries_the_definition() -> None:
 
 
 def test_binary_replies_have_the_published_form() -> None:
-    assert replies.message_data(7, 2**40, b"xy") == (
+    assert replies.message_head(7, 2**40) + b"xy" == (
         b"\x01" + struct.pack("<IQ", 7, 2**40) + b"xy"
     )
     assert replies.time(5) == b"\x02" + struct.pack("<Q", 5)

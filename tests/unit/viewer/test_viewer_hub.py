@@ -11,7 +11,7 @@ from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.outbox import Outbox
-from navette.viewer.replies import Channel, ConnectionGraph, message_data
+from navette.viewer.replies import Channel, ConnectionGraph, message_head
 from navette.viewer.session import Session, Topic, Watch
 
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
@@ -106,8 +106,8 @@ def test_messages_go_to_their_watchers_under_their_own_ids(bench: Bench) -> None
     bench.subscribe(one, 10, channel.id)
     bench.subscribe(two, 20, channel.id)
     bench.hub.message(Watch(channel, None), 123, b"scan")
-    assert sent(one.outbox) == [message_data(10, 123, b"scan")]
-    assert sent(two.outbox) == [message_data(20, 123, b"scan")]
+    assert sent(one.outbox) == [message_head(10, 123) + b"scan"]
+    assert sent(two.outbox) == [message_head(20, 123) + b"scan"]
     assert sent(other.outbox) == []
 
 
@@ -364,12 +364,12 @@ def test_a_client_that_does_not_read_has_no_streams_until_it_reads(
     assert bench.program.take() == [("watch", "/lidar", None)]
     bench.hub.message(Watch(scan, None), 5, b"scan")
     bench.hub.message(Watch(grid, slow.id), 6, b"map")
-    assert sent(slow.outbox) == [message_data(2, 6, b"map")]
-    assert sent(other.outbox) == [message_data(1, 5, b"scan")]
+    assert sent(slow.outbox) == [message_head(2, 6) + b"map"]
+    assert sent(other.outbox) == [message_head(1, 5) + b"scan"]
 
     bench.hub.resume(slow)
     bench.hub.message(Watch(scan, None), 7, b"new")
-    assert sent(slow.outbox) == [message_data(1, 7, b"new")]
+    assert sent(slow.outbox) == [message_head(1, 7) + b"new"]
     bench.ask(other, op="unsubscribe", subscriptionIds=[1])
     bench.ask(slow, op="unsubscribe", subscriptionIds=[1])
     assert bench.program.take() == [("unwatch", "/lidar", None)]
@@ -387,7 +387,7 @@ def test_a_client_that_hangs_receives_what_is_sent_once(bench: Bench) -> None:
     bench.hub.suspend(slow)
     bench.hub.message(Watch(goal, None), 5, b"goal")
     bench.hub.resume(slow)
-    assert sent(slow.outbox) == [message_data(2, 5, b"goal")]
+    assert sent(slow.outbox) == [message_head(2, 5) + b"goal"]
 
 
 def test_a_topic_that_becomes_a_stream_is_suspended_later(bench: Bench) -> None:

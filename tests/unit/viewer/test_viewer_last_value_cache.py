@@ -9,7 +9,7 @@ from test_viewer_hub import Bench
 from viewer_fakes import sent
 
 from navette.viewer.playback import PlaybackState, PlaybackStatus
-from navette.viewer.replies import ConnectionGraph, message_data
+from navette.viewer.replies import ConnectionGraph, message_head
 from navette.viewer.session import Topic, Watch
 
 PATH = Topic("/path", "nav_msgs/msg/Path", "float64[] x")
@@ -42,8 +42,8 @@ def test_late_clients_receive_the_last_message(bench: Bench) -> None:
     assert latecomer(bench) == []
     say(bench, 1)
     say(bench, 2, b"newer")
-    assert latecomer(bench) == [message_data(7, 2, b"newer")]
-    assert latecomer(bench) == [message_data(7, 2, b"newer")]
+    assert latecomer(bench) == [message_head(7, 2) + b"newer"]
+    assert latecomer(bench) == [message_head(7, 2) + b"newer"]
 
 
 def test_a_state_topic_stays_subscribed_when_the_last_client_leaves(
@@ -55,7 +55,7 @@ def test_a_state_topic_stays_subscribed_when_the_last_client_leaves(
     bench.hub.leave(session)
     assert bench.program.take() == []
     say(bench, 3)
-    assert latecomer(bench) == [message_data(7, 3, b"way")]
+    assert latecomer(bench) == [message_head(7, 3) + b"way"]
 
 
 def test_the_message_of_a_publisher_that_left_is_dropped(bench: Bench) -> None:
@@ -68,7 +68,7 @@ def test_the_message_of_a_publisher_that_left_is_dropped(bench: Bench) -> None:
     bench.hub.set_graph(PUBLISHED)  # watched already
     assert bench.program.take() == []
     say(bench, 2)
-    assert latecomer(bench) == [message_data(7, 2, b"way")]
+    assert latecomer(bench) == [message_head(7, 2) + b"way"]
 
 
 def test_command_topics_are_not_subscribed(bench: Bench) -> None:

@@ -1,10 +1,11 @@
 """Send queue of a slow client."""
 
-from navette.viewer.outbox import Outbox
+from navette.viewer.outbox import Frame, MessageFrame, Outbox, Parts
+from navette.viewer.replies import message_head
 
 
-def drain(outbox: Outbox) -> list[str | bytes]:
-    frames = []
+def drain(outbox: Outbox) -> list[Frame | Parts]:
+    frames: list[Frame | Parts] = []
     while outbox:
         frames.append(outbox.pop())
     return frames
@@ -63,10 +64,23 @@ def test_of_too_many_bytes_the_largest_stream_loses_its_oldest() -> None:
     for number in range(20):
         outbox.put_data("camera", bytes([number]) * 40)
         outbox.put_data("depth", bytes([number]) * 30)
-    frames = []
+    frames: list[Frame | Parts] = []
     while outbox:
         frames.append(outbox.pop())
     assert frames[0] == b"goal"
     assert bytes([19]) * 40 in frames
     assert bytes([19]) * 30 in frames
     assert sum(map(len, frames)) <= 100
+
+
+def test_a_long_message_is_sent_in_parts_without_a_copy_of_it() -> None:
+    outbox = Outbox()
+    payload = bytes(range(256)) * 4096
+    outbox.put_data("map", MessageFrame(3, 5, payload))
+    parts = outbox.pop()
+    assert isinstance(parts, list)
+    assert b"".join(parts) == message_head(3, 5) + payload
+    assert max(len(each) for each in parts) < len(payload) / 2
+    assert outbox.size == len(payload)
+    outbox.sent()
+    assert outbox.size == 0

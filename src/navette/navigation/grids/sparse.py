@@ -146,7 +146,7 @@ class SparseGrid(Generic[Scalar]):
 
     def _reserve(self, shape: tuple[int, ...]) -> None:
         height, width = shape
-        room = min(max(shape) // 2, _MOST_ROOM)
+        room = min(max(shape), _MOST_ROOM)
         # One column more, so that kernels always get a part of the rows.
         size = (height + 2 * room, width + 2 * room + 1)
         self._space, self._memory = _zeros(size, self._dtype)

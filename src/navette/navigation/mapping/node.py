@@ -141,6 +141,7 @@ class MapMemoryNode(StageNode):
 
     def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
+        self._has_nav2_reader = False
         self._tracker = self._new_tracker()
         trajectory = self.resolve_topic_name(topics.TRAJECTORY.name)
         self._trajectories = next(
@@ -209,6 +210,8 @@ class MapMemoryNode(StageNode):
             self._fuse(newest)
         elif self._whole_ns < self._map_ns and self._subscribers() > self._served:
             self._publish_whole()  # to subscribers that came since
+        elif not self._has_nav2_reader and self._find_nav2_reader():
+            self.hand_over(topics.GLOBAL_COSTMAP.name, self.newest_grid())
 
     def on_params_changed(self, old: MapMemoryParams) -> None:
         """Reset the map if its shape changed; other values apply at once."""
@@ -386,7 +389,18 @@ class MapMemoryNode(StageNode):
         self._served, self._whole_ns = self._subscribers(), self._map_ns
         message = self.newest_grid()
         self.hand_over(topics.MAP.name, message)
-        self.hand_over(topics.GLOBAL_COSTMAP.name, message)
+        if self._find_nav2_reader():
+            self.hand_over(topics.GLOBAL_COSTMAP.name, message)
+
+    def _find_nav2_reader(self) -> bool:
+        """Return whether somebody has subscribed to the map under Nav2's name so far.
+
+        Until then the network need not keep a second copy of the map. From then on
+        each map is published, so that a late subscriber gets the newest.
+        """
+        if not self._has_nav2_reader:
+            self._has_nav2_reader = self.has_listeners(topics.GLOBAL_COSTMAP.name)
+        return self._has_nav2_reader
 
     # -- MapStore and CostmapSource ----------------------------------------------
 

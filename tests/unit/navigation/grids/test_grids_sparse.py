@@ -75,10 +75,10 @@ def test_a_large_grid_returns_the_memory_of_its_copied_rows() -> None:
         written.add(CellWindow(row, row + 1, column, column + 1))
     before = grid.cells
     expected = before[rows, columns].copy()
-    grid.grow(((1500, 10), (20, 1500)), written)
-    assert grid.cells.shape == (3510, 3520)
+    grid.grow(((2100, 10), (20, 2100)), written)
+    assert grid.cells.shape == (4110, 4120)
     assert not np.shares_memory(before, grid.cells)
-    np.testing.assert_array_equal(grid.cells[rows + 1500, columns + 20], expected)
+    np.testing.assert_array_equal(grid.cells[rows + 2100, columns + 20], expected)
     assert np.count_nonzero(grid.cells) == len(np.unique(rows * 2000 + columns))
 
 
