@@ -58,7 +58,7 @@ def gaps_ms(seconds: float, browser: str) -> tuple[list[float], list[float]]:
 
     simulation.sim.create_subscription(Twist, "/cmd_vel", on_command, 10, shared=True)
     assert simulation.viewer is not None, "not headless"
-    with tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         command = [browser, *SWITCHES, f"--user-data-dir={profile}"]
         page = subprocess.Popen(
             [*command, simulation.viewer.url],

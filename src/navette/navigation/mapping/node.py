@@ -128,7 +128,7 @@ class MapMemoryNode(StageNode):
         ),
         Output.of(
             topics.GLOBAL_COSTMAP,
-            "the map, under Nav2's name",
+            "the map, under Nav2's name, once somebody has subscribed to it",
         ),
         Output.of(
             topics.GLOBAL_COSTMAP_UPDATES,

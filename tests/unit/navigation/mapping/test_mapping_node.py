@@ -331,6 +331,24 @@ def test_updates_applied_to_an_older_map_give_the_newest(fusion: str) -> None:
         assert parts.last.header == rig.maps.last.header
 
 
+def test_a_late_reader_under_nav2s_name_gets_the_newest_map() -> None:
+    """Until the first one nothing is kept under it; then every map is published."""
+    name, kind = "/global_costmap/costmap", "nav_msgs/msg/OccupancyGrid"
+    with GraphHarness() as graph:
+        rig = Rig(graph, update_distance_m=0.1, update_period_s=0.1)
+        drive(rig, 4)
+        rig.run_ms(500)
+        first = graph.collect(name, kind, latched=True)
+        rig.run_ms(10)
+        assert first.count == 0
+        rig.run_ms(100)
+        assert first.messages == [rig.maps.last]
+        drive(rig, 4)
+        second = graph.collect(name, kind, latched=True)
+        rig.run_ms(10)
+        assert second.messages == [rig.maps.last]
+
+
 def test_a_map_that_grows_is_published_whole_only() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph, size_m=2.0, growth_m=2.0)
