@@ -28,6 +28,11 @@ from navette.sim.scene import (
 from navette.sim.sensor_specs import CameraSensor
 from navette.sim.shape_table import ShapeTable, ring_directions
 
+SPANS = pytest.mark.parametrize(
+    ("first", "last"),
+    [(-np.pi, np.pi), (-2.3, 2.3), (0.5, 2.0), (1.0, 1.0 + 2 * np.pi)],
+)
+
 
 def _random_shape(rng: np.random.Generator) -> Shape:
     a, b, c = rng.uniform(0.1, 1.2, 3)
@@ -84,10 +89,7 @@ def _check_fan(
 
 
 @pytest.mark.parametrize("seed", range(8))
-@pytest.mark.parametrize(
-    ("first", "last"),
-    [(-np.pi, np.pi), (-2.3, 2.3), (0.5, 2.0), (1.0, 1.0 + 2 * np.pi)],
-)
+@SPANS
 def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
     simulator = Simulator(_random_scene(seed))
     model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
@@ -130,10 +132,7 @@ def test_fans_between_walls_equal_mujocos(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize(
-    ("first", "last"),
-    [(-np.pi, np.pi), (-2.3, 2.3), (0.5, 2.0), (1.0, 1.0 + 2 * np.pi)],
-)
+@SPANS
 def test_rings_equal_mujocos(seed: int, first: float, last: float) -> None:
     simulator = Simulator(_random_scene(seed))
     model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
