@@ -14,7 +14,7 @@ from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids.hit_points import HitPoints
-from navette.navigation.grids.obstacle_points import obstacle_points
+from navette.navigation.grids.obstacle_points import obstacle_points, points_within
 from navette.navigation.grids.spec import UNKNOWN, Cells, GridSpec, grid_frame
 from navette.navigation.grids.sub_cells import NO_POINTS, CellMarks, Points
 from navette.navigation.grids.unseen import Layer
@@ -67,7 +67,6 @@ class MapObstacles:
         self._hits = HitPoints()
         self._map: tuple[Cells, GridSpec] | None = None
         self._stamp_ns = 0
-        self._marks: tuple[int, CellMarks] | None = None  # with the stamp of its map
         self._near: tuple[Region, LethalCells] | None = None
 
     @property
@@ -122,11 +121,14 @@ class MapObstacles:
         )
         if region.radius_m is None:
             return LethalCells(centers, np.arange(len(centers) + 1), centers)
-        if self._marks is None or self._marks[0] != self._stamp_ns:
-            hits = self._hits.at(self._stamp_ns)
-            marks = CellMarks.of(spec, NO_POINTS if hits is None else hits)
-            self._marks = self._stamp_ns, marks
-        first, points = self._marks[1].points_by_cell(spec, centers, region.radius_m)
+        hits = self._hits.at(self._stamp_ns)
+        if hits is None:
+            hits = NO_POINTS
+        # A point is less than an edge away from the centre of its cell.
+        reach_m = region.reach_m + spec.resolution
+        near = points_within(hits, _HERE, around=region.around, reach_m=reach_m)
+        marks = CellMarks.of(spec, near)
+        first, points = marks.points_by_cell(spec, centers, region.radius_m)
         return LethalCells(centers, first, points)
 
 

@@ -1,4 +1,4 @@
-"""Lethal cells of a grid around a pose, as points in the map."""
+"""Obstacles around a pose, as points in the map."""
 
 import math
 from typing import Any
@@ -53,6 +53,35 @@ def obstacle_points(
         spec.resolution,
         *map_T_origin,
     )
+
+
+def points_within(
+    points: NDArray[np.float64],
+    map_T_frame: Pose2,
+    *,
+    around: Pose2,
+    reach_m: float,
+) -> NDArray[np.float64]:
+    """Return the points (N, 2) of a frame, m, within reach of a pose, in the map."""
+    found: NDArray[np.float64] = _within(
+        points, np.array(map_T_frame), np.array(around), float(reach_m)
+    )
+    return found
+
+
+@kernel
+def _within(points: Any, map_T_frame: Any, around: Any, reach: float) -> Any:
+    x, y, yaw = map_T_frame
+    c, s = math.cos(yaw), math.sin(yaw)
+    kept = np.empty_like(points)
+    count = 0
+    for k in range(points.shape[0]):
+        px = x + c * points[k, 0] - s * points[k, 1]
+        py = y + s * points[k, 0] + c * points[k, 1]
+        if (px - around[0]) ** 2 + (py - around[1]) ** 2 <= reach * reach:
+            kept[count, 0], kept[count, 1] = px, py
+            count += 1
+    return kept[:count]
 
 
 @kernel(allocates=False)

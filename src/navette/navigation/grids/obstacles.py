@@ -16,7 +16,7 @@ from navette.navigation.grids.hit_points import HitPoints
 from navette.navigation.grids.map_obstacles import MapObstacles, Region
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
-from navette.navigation.grids.obstacle_points import obstacle_points
+from navette.navigation.grids.obstacle_points import obstacle_points, points_within
 from navette.navigation.grids.spec import UNKNOWN, GridSpec
 from navette.navigation.grids.sub_cells import point_radius
 from navette.navigation.grids.unseen import (
@@ -183,9 +183,7 @@ class ObstacleTracker:
             radius = max(spec.resolution / 2, self._map.half_cell_m)
             region = Region(around, reach_m, lethal_cost, None)
         else:
-            points = _placed_within(
-                hits, np.array(map_T_frame), np.array(around), float(reach_m)
-            )
+            points = points_within(hits, map_T_frame, around=around, reach_m=reach_m)
             radius = point_radius(spec.resolution)
             region = Region(around, reach_m, lethal_cost, radius)
         known = self._map.hidden_from(here, region, self._body_m)
@@ -274,19 +272,3 @@ def _has_lost(now: Any, before: Any, near: Any, down: int, right: int) -> bool:
 def _stamp_ns(msg: OccupancyGrid) -> int:
     stamp = msg.header.stamp
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
-
-
-@kernel
-def _placed_within(points: Any, map_T_frame: Any, around: Any, reach: float) -> Any:
-    """Return the points (N, 2) of a frame that are within reach of a pose, map."""
-    x, y, yaw = map_T_frame
-    c, s = math.cos(yaw), math.sin(yaw)
-    kept = np.empty_like(points)
-    count = 0
-    for k in range(points.shape[0]):
-        px = x + c * points[k, 0] - s * points[k, 1]
-        py = y + s * points[k, 0] + c * points[k, 1]
-        if (px - around[0]) ** 2 + (py - around[1]) ** 2 <= reach * reach:
-            kept[count, 0], kept[count, 1] = px, py
-            count += 1
-    return kept[:count]

@@ -25,7 +25,8 @@ from navette.navigation.grids.map_obstacles import (
     Region,
     _hidden,
 )
-from navette.navigation.grids.obstacles import _placed_within, _seen_also
+from navette.navigation.grids.obstacle_points import points_within
+from navette.navigation.grids.obstacles import _seen_also
 from navette.navigation.grids.sub_cells import CellMarks
 
 SEEDS = st.integers(0, 10_000)
@@ -70,7 +71,7 @@ def test_placed_points_within_reach(seed: int) -> None:
     rng = np.random.default_rng(seed)
     map_T_frame, around, reach_m = some_pose(rng), some_pose(rng), rng.uniform(0, 8)
     points = rng.uniform(-6, 6, (int(rng.integers(0, 50)), 2))
-    found = _placed_within(points, np.array(map_T_frame), np.array(around), reach_m)
+    found = points_within(points, map_T_frame, around=around, reach_m=reach_m)
     plain = map_T_frame.apply(points)
     away = np.hypot(*(plain - (around.x, around.y)).T)
     np.testing.assert_allclose(found, plain[away <= reach_m], atol=1e-9)
