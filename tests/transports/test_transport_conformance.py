@@ -167,6 +167,28 @@ def test_a_late_joiner_receives_the_last_depth_samples(bench: Bench) -> None:
     assert bench.pair.retransmits or volatile == []
 
 
+@pytest.mark.parametrize("depth", [1, 3])
+def test_a_late_joiner_receives_the_last_handed_over_samples(
+    bench: Bench, depth: int
+) -> None:
+    qos = EndpointQos.latched(depth)
+    publisher = bench.publisher(qos=qos)
+    for number in range(1, 6):
+        publisher.hand_over(String(data=f"m{number}"), 10 * number, number)
+    bench.settle()
+    volatile, _ = bench.subscription()
+    latched, _ = bench.subscription(qos=qos)
+    until(lambda: len(latched) == depth, "the history")
+    publisher.hand_over(String(data="m6"), 60, 6)
+    until(lambda: len(latched) == depth + 1, "the live sample")
+    bench.settle()
+    numbers = range(6 - depth, 7)
+    assert texts(latched) == [f"m{number}" for number in numbers]
+    assert [item[1] for item in latched] == [10 * number for number in numbers]
+    # Recovery fetches what was published up to half a second before, too.
+    assert bench.pair.retransmits or texts(volatile) == ["m6"]
+
+
 def test_latched_samples_are_copies(bench: Bench) -> None:
     publisher = bench.publisher(qos=LATCHED)
     message = String(data="before")
