@@ -196,29 +196,44 @@ def test_samples_published_during_a_reply_follow_the_kept_one(
     assert reader.numbers == [1, 2, 3, 4]
 
 
-@pytest.mark.parametrize("depth", [1, 5])
-def test_no_sample_is_lost_or_repeated_while_a_subscriber_joins(
-    pair: ZenohPair, depth: int
-) -> None:
-    port = publisher(pair)
-    is_over = threading.Event()
-    last = 0
+class Loop:
+    """Hands over samples in a thread until it is left."""
 
-    def publish() -> None:
-        nonlocal last
-        while not is_over.is_set():
-            last += 1
-            hand_over(port, last)
+    def __init__(self, port: PublisherPort) -> None:
+        self.last = 0
+        self._port = port
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._run)
 
-    thread = threading.Thread(target=publish)
-    thread.start()
-    reader = ForeignReader(pair, depth)
-    until(lambda: len(reader.numbers) > 100, "the samples")
-    is_over.set()
-    thread.join()
-    until(lambda: reader.numbers[-1] == last, "the last sample")
-    first = reader.numbers[0]
-    assert reader.numbers == list(range(first, last + 1))
+    def __enter__(self) -> "Loop":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._is_over.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._is_over.is_set():
+            self.last += 1
+            hand_over(self._port, self.last)
+
+
+def test_no_sample_is_lost_or_repeated_while_subscribers_join(pair: ZenohPair) -> None:
+    with Loop(publisher(pair)) as loop:
+        until(lambda: loop.last > 10, "the first samples")
+        foreign, deeper = ForeignReader(pair, 1), ForeignReader(pair, 5)
+        volatile, _ = subscribe(pair, VOLATILE)
+        until(lambda: len(foreign.numbers) > 100, "the samples")
+        until(lambda: len(deeper.numbers) > 100, "the samples")
+        until(lambda: len(volatile) > 100, "the samples")
+    until(lambda: foreign.numbers[-1] == loop.last, "the last sample")
+    until(lambda: deeper.numbers[-1] == loop.last, "the last sample")
+    until(lambda: volatile[-1][3] == loop.last, "the last sample")
+    for numbers in (foreign.numbers, [item[3] for item in volatile]):
+        assert numbers == list(range(numbers[0], loop.last + 1))
+    # Decision 0018: zenoh-ext may drop a sample that a newer one follows at once.
+    assert deeper.numbers == sorted(set(deeper.numbers))
 
 
 def test_a_closed_publisher_keeps_nothing(pair: ZenohPair) -> None:

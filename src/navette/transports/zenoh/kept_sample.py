@@ -24,18 +24,17 @@ from navette.transports.zenoh.log_once import LogOnce
 _ALL = "/@adv/**"
 
 
-def encoded(message: Any) -> Any:
-    """Return the CDR of a message, which may be encoded already."""
-    if message.__class__ is bytes:
-        return message
-    return message.data if message.__class__ is Encoded else serialize(message)
-
-
 class Sample(NamedTuple):
     """A message that its publisher does not change any more, or its CDR."""
 
     message: Any
     attachment: bytes
+
+    def encoded(self) -> bytes:
+        data = self.message
+        if data.__class__ is not bytes:
+            data = data.data if data.__class__ is Encoded else serialize(data)
+        return bytes(data)
 
 
 class KeptSample:
@@ -133,7 +132,7 @@ class KeptSample:
 
     def _reply(self, query: zenoh.Query, sample: Sample) -> None:
         try:
-            data = encoded(sample.message)
+            data = sample.encoded()
             query.reply(self._key, data, attachment=sample.attachment)
         except MessageError as error:
             text = f"{self._key}: the kept message cannot be sent: {error}"

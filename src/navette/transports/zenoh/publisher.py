@@ -1,5 +1,6 @@
 """Publishers: serialise once a message, and only while a remote subscription exists."""
 
+import contextlib
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -7,10 +8,12 @@ from typing import Any
 
 import zenoh
 
+from navette.msgs import serialize
 from navette.transports.base import PublisherPort
+from navette.transports.encoded import Encoded
 from navette.transports.lockstep import PublisherCount
 from navette.transports.zenoh.attachment import Attachment
-from navette.transports.zenoh.kept_sample import KeptSample, Sample, encoded
+from navette.transports.zenoh.kept_sample import KeptSample, Sample
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_publisher
 from navette.transports.zenoh.shared_memory import MIN_BYTES
@@ -68,26 +71,19 @@ class ZenohPublisher(PublisherPort):
             self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        self._send(message, source_ns, sequence)
-
-    def hand_over(self, message: Any, source_ns: int, sequence: int) -> None:
-        self._send(message, source_ns, sequence, is_final=True)
-
-    def _send(
-        self, message: Any, source_ns: int, sequence: int, *, is_final: bool = False
-    ) -> None:
         self.last = sequence
         if not (
             self.matches.remotes or self._keeps_samples or self._is_awaited(source_ns)
         ):
             return
-        attachment = Attachment(sequence, source_ns, self._entity.gid).encode()
+        data: Any = message.data if message.__class__ is Encoded else serialize(message)
+        if self._is_lazy and self._is_kept(data, source_ns, sequence):
+            return
+        if len(data) >= MIN_BYTES and not self._keeps_samples:
+            # A cache would keep the shared memory.
+            data = self._owner.session.shared_pools.stored(data)
         try:
-            if self._is_lazy:
-                message = message if is_final else encoded(message)
-                if self._is_kept(Sample(message, attachment)):
-                    return
-            self._put(self._stored(encoded(message)), attachment=attachment)
+            self._put(data, attachment=self._attachment(source_ns, sequence))
         except zenoh.ZError:
             if self._is_open and not self._owner.session.zenoh.is_closed():
                 raise
@@ -95,27 +91,12 @@ class ZenohPublisher(PublisherPort):
         if self._sent_count is not None:
             self._sent_count.add(sequence)
 
-    def _stored(self, data: Any) -> Any:
-        """Return a long payload in shared memory, unless a cache would keep it."""
-        if len(data) < MIN_BYTES or self._keeps_samples:
-            return data
-        return self._owner.session.shared_pools.stored(data)
+    def hand_over(self, message: Any, source_ns: int, sequence: int) -> None:
+        if not (self._is_lazy and self._is_kept(message, source_ns, sequence)):
+            self.send(message, source_ns, sequence)
 
-    def _is_kept(self, sample: Sample) -> bool:
-        """Keep a sample for late joiners, until a remote subscription exists."""
-        with self._lock:
-            if not (self._is_lazy and self._is_open):
-                return False
-            if not self.matches.remotes:
-                if self._kept is None:
-                    session = self._owner.session
-                    self._kept = KeptSample(
-                        session.zenoh, self._entity.key, session.log_once
-                    )
-                if self._kept.replace(sample):
-                    return True
-            self._is_lazy = False
-        return False
+    def _attachment(self, source_ns: int, sequence: int) -> bytes:
+        return Attachment(sequence, source_ns, self._entity.gid).encode()
 
     def _is_awaited(self, now_ns: int) -> bool:
         """Return whether a subscriber exists whose token is still unread (2 µs)."""
@@ -127,6 +108,29 @@ class ZenohPublisher(PublisherPort):
             return publisher is not None and bool(publisher.matching_status.matching)
         except zenoh.ZError:  # the session was closed
             return False
+
+    def _is_kept(self, message: Any, source_ns: int, sequence: int) -> bool:
+        """Keep a message for late joiners, until a remote subscription exists.
+
+        Args:
+            message: is not changed any more; may be CDR.
+        """
+        self.last = sequence
+        sample = Sample(message, self._attachment(source_ns, sequence))
+        with self._lock:
+            if not (self._is_lazy and self._is_open):
+                return False
+            with contextlib.suppress(zenoh.ZError):  # sending raises it, if at all
+                if not self.matches.remotes and self._newest().replace(sample):
+                    return True
+            self._is_lazy = False
+        return False
+
+    def _newest(self) -> KeptSample:
+        if self._kept is None:
+            session = self._owner.session
+            self._kept = KeptSample(session.zenoh, self._entity.key, session.log_once)
+        return self._kept
 
     def assert_alive(self) -> bool:
         return self._owner.assert_liveliness(self.matches)
