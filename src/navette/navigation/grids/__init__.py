@@ -72,6 +72,8 @@ from navette.navigation.grids.regions import SquareRegion
 from navette.navigation.grids.sparse import (
     RowSpans,
     SparseGrid,
+    copied,
+    padded,
     release_free_memory,
     sparse_zeros,
 )
@@ -98,6 +100,8 @@ __all__ = [
     "NO_CELLS",
     "RowSpans",
     "SparseGrid",
+    "copied",
+    "padded",
     "release_free_memory",
     "sparse_zeros",
     "SquareRegion",

@@ -25,6 +25,7 @@ from navette.navigation.grids import (
     compare,
     mark_points,
     merge,
+    padded,
     release_free_memory,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
@@ -306,14 +307,14 @@ class MapMemory:
         self._changed = None
         self._marked.grow(growth.rows[0], growth.columns[0])
         self.spec = growth.spec
-        self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
+        self._cells = padded(self._cells, pad, UNKNOWN)
         if self._base is not None:
-            self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
+            self._base = padded(self._base, pad, UNKNOWN)
         self._masks.grow(pad, self._written)
         self._vanished.grow(pad, self._written)
         self._written.grow(pad)
         if self._log_odds is not None:
-            self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
+            self._log_odds = padded(self._log_odds, pad, np.nan)
 
     def _kept(self, costmap: PlacedCostmap, window: CellWindow) -> NDArray[np.int64]:
         """Free the lethal cells whose obstacles vanished.

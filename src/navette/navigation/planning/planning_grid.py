@@ -20,6 +20,7 @@ from navette.navigation.grids import (
     ObstacleGrid,
     body_points,
     cells_in_footprint,
+    copied,
     level_type,
     make_obstacles,
     mark_points,
@@ -118,8 +119,8 @@ class PlanningGrid:
         """Return a grid with arrays of its own."""
         return replace(
             self,
-            obstacles=self.obstacles.copy(),
-            distances=self.distances._replace(level=self.distances.level.copy()),
+            obstacles=copied(self.obstacles),
+            distances=self.distances._replace(level=copied(self.distances.level)),
             cost=copy_costs(self.cost),
             cheap=None if self.cheap is None else self.cheap.copy(),
         )

@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.geometry import Pose2
-from navette.navigation.grids import NO_CELLS, UNKNOWN, CellWindow, GridSpec
+from navette.navigation.grids import (
+    NO_CELLS,
+    UNKNOWN,
+    CellWindow,
+    GridSpec,
+    copied,
+    padded,
+)
 
 Cells = NDArray[np.int8]
 
@@ -83,12 +90,12 @@ class PlanningMap:
             spec.height + sum(rows),
             spec.origin @ shift,
         )
-        self.cells = np.pad(self.cells, (rows, columns), constant_values=UNKNOWN)
+        self.cells = padded(self.cells, (rows, columns), UNKNOWN)
         return True
 
     def copy(self) -> "PlanningMap":
         """Return a map that changes independently."""
-        return PlanningMap(self.cells.copy(), self.spec)
+        return PlanningMap(copied(self.cells), self.spec)
 
 
 def _sides(at: int, size: int, step: int, most: int) -> tuple[int, int] | None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import NO_CELLS, CellWindow, GridSpec
+from navette.navigation.grids import NO_CELLS, CellWindow, GridSpec, copied
 from navette.navigation.planning.planning_grid import NO_HITS
 
 Cells = NDArray[np.int8]
@@ -53,6 +53,6 @@ class ReceivedMap:
         if part is None:
             return NO_CELLS
         if not self._is_own:
-            self.cells, self._is_own = self.cells.copy(), True
+            self.cells, self._is_own = copied(self.cells), True
         self.cells[part.window.slices] = part.cells
         return part.window
