@@ -74,7 +74,6 @@ from navette.navigation.grids.sparse import (
     SparseGrid,
     copied,
     padded,
-    release_free_memory,
     sparse_zeros,
 )
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
@@ -102,7 +101,6 @@ __all__ = [
     "SparseGrid",
     "copied",
     "padded",
-    "release_free_memory",
     "sparse_zeros",
     "SquareRegion",
     "NO_DISCS",

@@ -6,12 +6,9 @@ it, 0.1 to 5 ms, while the commands of a robot wait.
 """
 
 import contextlib
-import ctypes
-import functools
 import math
 import mmap
 import sys
-from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -91,25 +88,6 @@ def _small_pages(length: int) -> mmap.mmap:
     with contextlib.suppress(OSError):  # a kernel without large pages
         memory.madvise(mmap.MADV_NOHUGEPAGE)
     return memory
-
-
-def release_free_memory() -> None:
-    """Return memory that freed arrays have left inside the heap to the system.
-
-    Arrays of growing size do not fit into the gaps that smaller ones left: 19 of 461 MB
-    after a drive in which the map grew from 120 to 220 m. Takes about 1.5 ms.
-    """
-    trim = _malloc_trim()
-    if trim is not None:
-        trim(0)
-
-
-@functools.cache
-def _malloc_trim() -> Callable[[int], int] | None:
-    """Return the function of glibc; other C libraries have none."""
-    if sys.platform != "linux":
-        return None
-    return getattr(ctypes.CDLL(None), "malloc_trim", None)
 
 
 Padding = tuple[tuple[int, int], tuple[int, int]]

@@ -26,7 +26,6 @@ from navette.navigation.grids import (
     mark_points,
     merge,
     padded,
-    release_free_memory,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.marked_points import MarkedPoints
@@ -302,7 +301,6 @@ class MapMemory:
         growth = grow_to_hold(self.spec, corners, self.params)
         if growth is None:
             return
-        release_free_memory()
         pad = (growth.rows, growth.columns)
         self._changed = None
         self._marked.grow(growth.rows[0], growth.columns[0])
