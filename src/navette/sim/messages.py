@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convert the simulator's values to ROS messages."""
 
-import functools
 import struct
 from collections.abc import Sequence
 
@@ -153,7 +152,6 @@ def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> Lase
     )
 
 
-@functools.lru_cache(maxsize=16)
 def _rounded(*values: float) -> tuple[float, ...]:
     """Return the nearest numbers of 32 bits."""
     layout = f"{len(values)}f"
