@@ -1,6 +1,5 @@
 """Ports that one thread closes while another uses them."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -11,13 +10,6 @@ from navette.msgs.std_msgs.msg import String
 from navette.transports import Endpoint, EndpointKind, EndpointQos
 
 TYPE = "std_msgs/msg/String"
-
-
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
 
 
 def end(kind: EndpointKind) -> Endpoint:

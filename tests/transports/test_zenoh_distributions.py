@@ -1,10 +1,8 @@
 """Peers of other distributions: tokens, keys and attachments as they write them."""
 
 import threading
-from collections.abc import Iterator
 from typing import Any
 
-import pytest
 import zenoh
 from transport_pairs import LIMIT_S, ZenohPair, message_of, until
 
@@ -18,13 +16,6 @@ from navette.transports.zenoh.tokens import gid_of
 
 IMAGE, ADD = "sensor_msgs/msg/Image", "example_interfaces/srv/AddTwoInts"
 BACKENDS = "/backends:cpu:"  # Lyrical's, after types with an unbounded uint8[]
-
-
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
 
 
 class Peer:

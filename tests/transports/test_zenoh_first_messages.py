@@ -1,10 +1,8 @@
 """A client's tokens may be read later than its request."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-import pytest
 from transport_pairs import ZenohPair, message_of, until
 
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -20,13 +18,6 @@ from navette.transports import (
 )
 
 BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
-
-
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
 
 
 def endpoint(kind: EndpointKind, qos: EndpointQos | None = None) -> Endpoint:

@@ -1,7 +1,6 @@
 """A latched publisher without remote subscriptions serialises nothing."""
 
 import threading
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -27,13 +26,6 @@ LATCHED = EndpointQos.latched(1)
 DEEPER = EndpointQos.latched(5)
 VOLATILE = EndpointQos()
 KEY = "7/map/std_msgs::msg::dds_::String_/*"  # any type hash
-
-
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
 
 
 class Serialized:

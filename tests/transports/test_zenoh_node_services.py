@@ -1,10 +1,8 @@
 """Services directly below a node's name share a queryable."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
 import zenoh
 from transport_pairs import ZenohPair, until
 
@@ -17,13 +15,6 @@ from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.keys import data_key
 
 ADD = "example_interfaces/srv/AddTwoInts"
-
-
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
 
 
 class Server:

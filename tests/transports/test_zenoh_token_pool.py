@@ -33,13 +33,6 @@ SUBSCRIPTION = Endpoint(
 )
 
 
-@pytest.fixture
-def pair() -> Iterator[ZenohPair]:
-    pair = ZenohPair()
-    yield pair
-    pair.close()
-
-
 def publisher(
     pair: ZenohPair, topic: str = "/t", qos: EndpointQos | None = None
 ) -> tuple[bytes, Any]:
