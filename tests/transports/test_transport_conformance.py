@@ -25,7 +25,7 @@ from navette.transports import (
 
 LATCHED = EndpointQos(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
-BEST_AVAILABLE = EndpointQos(durability=DurabilityPolicy.BEST_AVAILABLE)
+BEST_AVAILABLE = EndpointQos(depth=3, durability=DurabilityPolicy.BEST_AVAILABLE)
 
 
 class Bench:
@@ -150,6 +150,7 @@ def test_a_late_joiner_receives_the_last_depth_samples(bench: Bench) -> None:
     publisher = bench.publisher(qos=LATCHED)
     for number in range(1, 6):
         publisher.send(String(data=f"m{number}"), number, number)
+    bench.settle()  # decision 0018: a history may begin late while its publisher is new
     all_kept, _ = bench.subscription(qos=LATCHED)
     one_only = EndpointQos.latched(1)
     newest, _ = bench.subscription(qos=one_only)

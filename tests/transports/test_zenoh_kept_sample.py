@@ -206,11 +206,13 @@ def test_samples_published_during_a_reply_follow_the_kept_one(
     for number in (2, 3):
         port.send(Encoded(serialize(String(data="")), String, print), 0, number)
     serialized.may_proceed.set()
-    until(lambda: len(reader.numbers) == 3, "the samples")
+    until(lambda: reader.numbers[-1:] == [3], "the newest sample")
     pair.settle()
     hand_over(port, 4)
-    until(lambda: len(reader.numbers) == 4, "the live sample")
-    assert reader.numbers == [1, 2, 3, 4]
+    until(lambda: reader.numbers[-1:] == [4], "the live sample")
+    # Decision 0018: with more than one, what follows the kept sample may begin late.
+    begins_late = depth > 1 and 2 not in reader.numbers
+    assert reader.numbers == ([1, 3, 4] if begins_late else [1, 2, 3, 4])
 
 
 class Loop:

@@ -44,8 +44,9 @@ def talk():
     global count
     count += 1
     publisher.publish(String(data=f"{sys.argv[1]} {count}"))
+    if count == 1:  # it spins: a signal before that would end the context first
+        print("ready", flush=True)
 node.create_timer(0.01, talk)
-print("ready", flush=True)
 navette.spin(node)
 """
 
