@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -204,8 +205,11 @@ def test_bash_completes(talker: Child) -> None:
     if bash is None:
         pytest.skip("no bash here")
     navette = f"{sys.executable} -m navette"
+    # The completion calls `navette`, also where the environment is not activated.
+    paths = (sysconfig.get_path("scripts"), os.environ["PATH"])
     done = subprocess.run(
         [bash, "--norc", "-c", COMPLETE.format(navette=navette)],
+        env={**os.environ, "PATH": os.pathsep.join(paths)},
         capture_output=True,
         text=True,
         check=False,
