@@ -42,6 +42,12 @@ class ConnectionLimit:
         self._count -= 1
         self._opening.pop(connection, None)
 
+    def close(self) -> None:
+        """Abort the connections without a complete request, also later ones."""
+        self._most = 0
+        for connection in self._opening:
+            connection.transport.abort()
+
 
 class BoundedConnection(ServerConnection):
     """A connection whose fragments and control frames are bounded."""

@@ -49,7 +49,9 @@ _WORK_SHARE, _WORK_BURST_S = 0.2, 0.05
 _MAX_OPENING = 32  # connections besides the clients: HTTP requests and handshakes
 _BACKLOG = 32  # connections accepted in one turn
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
-_OPEN_S = 2.0  # until a request; browsers open connections in advance
+# Until a complete request, also of a page on a busy machine. Idle connections, which
+# browsers open in advance, are the first to go when there are too many.
+_OPEN_S = 10.0
 _CLOSE_S = 1.0
 
 
@@ -152,7 +154,7 @@ class ViewerServer:
         self._tick()
         self._run_period()
         await self._stop.wait()
-        await self._end(servers)
+        await self._end(servers, limit)
 
     async def _accept(
         self, listener: socket.socket, connection_class: type[BoundedConnection]
@@ -175,8 +177,9 @@ class ViewerServer:
             logger=_log,
         )
 
-    async def _end(self, servers: list[Server]) -> None:
+    async def _end(self, servers: list[Server], limit: ConnectionLimit) -> None:
         """Close all connections; abort clients that do not complete the handshake."""
+        limit.close()
         ended = []
         for server in servers:
             server.close()

@@ -107,3 +107,15 @@ def test_requests_wait_while_many_are_unfinished() -> None:
         await waiting
 
     asyncio.run(run())
+
+
+def test_closing_does_not_wait_for_idle_connections(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Browsers open connections in advance, and send nothing on them."""
+    monkeypatch.setattr("navette.viewer.server._OPEN_S", 1000.0)
+    with Program(talker) as program:
+        idle = socket.create_connection(("127.0.0.1", program.viewer.port))
+        assert is_served(program)  # connections are accepted in order
+    with idle, suppress(ConnectionResetError):
+        assert idle.recv(1) == b""
