@@ -128,6 +128,7 @@ def test_the_last_map_reaches_a_reader_that_was_stopped(writer: Node) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_link_that_was_full_for_longer_than_zenoh_waits_is_kept(writer: Node) -> None:
     """With Zenoh's own 5 s the link was closed and never opened again."""
     publisher = writer.create_publisher(OccupancyGrid, "map", LATCHED)
