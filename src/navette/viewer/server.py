@@ -52,6 +52,7 @@ _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
 # Until a complete request, also of a page on a busy machine. Idle connections, which
 # browsers open in advance, are the first to go when there are too many.
 _OPEN_S = 10.0
+_TLS_S = 2.0  # until the end of a TLS handshake, in which connections are not counted
 _CLOSE_S = 1.0
 
 
@@ -163,7 +164,7 @@ class ViewerServer:
             self._client,
             sock=listener,
             ssl=self._tls,
-            ssl_handshake_timeout=None if self._tls is None else _OPEN_S,
+            ssl_handshake_timeout=None if self._tls is None else _TLS_S,
             subprotocols=[Subprotocol(name) for name in SUBPROTOCOLS],
             process_request=self._answer,
             compression=None,  # costs more time than loopback gains
