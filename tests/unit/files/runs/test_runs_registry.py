@@ -282,7 +282,7 @@ def test_claims_at_the_same_instant_in_two_folders_get_two_names(
         return PrivateRun.claim("demo")
 
     with ThreadPoolExecutor(2) as threads:
-        for _ in range(6):
+        for _ in range(20):
             runs = list(threads.map(claim, folders))
             assert sorted(run.info.name for run in runs) == ["demo", "demo-2"]
             for run in runs:
