@@ -120,6 +120,14 @@ class WatchNodes:
 
 
 @dataclass(frozen=True)
+class ApplyGridUpdates:
+    """The client applies the updates of grids: it needs few whole ones.
+
+    Used by Navette's own page only.
+    """
+
+
+@dataclass(frozen=True)
 class FetchAsset:
     uri: str
     request_id: int
@@ -160,6 +168,7 @@ ClientFrame = (
     | UnwatchParameters
     | WatchGraph
     | WatchNodes
+    | ApplyGridUpdates
     | FetchAsset
     | CallService
     | ControlPlayback
@@ -369,6 +378,7 @@ _TEXT: dict[str, Callable[[_Fields], ClientFrame]] = {
     "unsubscribeConnectionGraph": lambda _: WatchGraph(wanted=False),
     "subscribeNodes": lambda _: WatchNodes(wanted=True),
     "unsubscribeNodes": lambda _: WatchNodes(wanted=False),
+    "applyGridUpdates": lambda _: ApplyGridUpdates(),
     "stepPlayback": lambda _: StepPlayback(),
     "fetchAsset": lambda f: FetchAsset(f.text("uri"), f.identifier("requestId")),
 }

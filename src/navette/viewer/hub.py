@@ -16,6 +16,8 @@ from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
 from navette.viewer.command_queue import CommandRunner
 from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.grid_copies import GridCopies
+from navette.viewer.large_grid import Payload
 from navette.viewer.last_value_cache import LastValueCache
 from navette.viewer.liveness import NodeReport
 from navette.viewer.offered_services import OfferedServices
@@ -182,14 +184,14 @@ class Hub:
         for frame in self._services.update(services):
             self._broadcast(frame)
 
-    def message(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
+    def message(self, watch: Watch, stamp_ns: int, payload: Payload) -> None:
         channel_id = watch.channel.id
         self._traffic.add(channel_id, len(payload))
         for client in self._watchers.get(watch, ()):
             session = self._sessions[client]
             subscription_id = session.subscription_by_channel[channel_id]
             frame = MessageFrame(subscription_id, stamp_ns, payload)
-            session.outbox.put_data(subscription_id, frame)
+            session.put(watch.channel, frame)
         if channel_id in self._last:
             self._last.store(channel_id, stamp_ns, payload)
             self._drop_unwatched(watch)
@@ -211,6 +213,8 @@ class Hub:
         """Send the time to all clients; only the newest is queued for a slow one."""
         if now_ns == self.now_ns:
             return
+        if now_ns < self.now_ns:
+            self._clear_grid_copies()
         self.now_ns = now_ns
         frame = replies.time(now_ns)
         for session in self._sessions.values():
@@ -224,11 +228,17 @@ class Hub:
         self._playback = replies.playback_state(state, did_seek=False, request_id="")
         if did_seek:
             self._last.clear()
+            self._clear_grid_copies()
         for session in self._sessions.values():
             if did_seek:  # queued messages are from before the seek
                 for subscription_id in session.channel_by_subscription:
                     session.outbox.forget(subscription_id)
             session.send(frame)
+
+    def _clear_grid_copies(self) -> None:
+        for session in self._sessions.values():
+            if session.grid_copies is not None:
+                session.grid_copies.clear()
 
     def parameters(
         self,
@@ -316,6 +326,8 @@ class Hub:
         channel_id = session.channel_by_subscription.pop(subscription_id)
         del session.subscription_by_channel[channel_id]
         session.outbox.forget(subscription_id)
+        if session.grid_copies is not None:
+            session.grid_copies.forget(subscription_id)
         if channel_id in session.suspended_channels:
             session.suspended_channels.discard(channel_id)
         else:
@@ -337,8 +349,7 @@ class Hub:
         last = self._last.last(channel.id)
         if last is not None:
             subscription_id = session.subscription_by_channel[channel.id]
-            frame = MessageFrame(subscription_id, *last)
-            session.outbox.put_data(subscription_id, frame)
+            session.put(channel, MessageFrame(subscription_id, *last))
 
     def _keep(self, channel: Channel, *, is_published: bool) -> None:
         """Subscribe without a client while the topic has a publisher."""
@@ -431,6 +442,12 @@ class Hub:
         session.wants_nodes = request.wanted
         if request.wanted:
             self._request(session, self._program.request_parameter_texts)
+
+    def _apply_grid_updates(
+        self, session: Session, _request: frames.ApplyGridUpdates
+    ) -> None:
+        if session.grid_copies is None:
+            session.grid_copies = GridCopies(session.outbox)
 
     def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
         if sum(each.outbox.size for each in self._sessions.values()) > _MAX_QUEUED:
@@ -547,6 +564,7 @@ _HANDLERS: dict[type, Callable[..., None]] = {
     frames.UnwatchParameters: Hub._unwatch_parameters,
     frames.WatchGraph: Hub._watch_graph,
     frames.WatchNodes: Hub._watch_nodes,
+    frames.ApplyGridUpdates: Hub._apply_grid_updates,
     frames.FetchAsset: Hub._fetch_asset,
     frames.CallService: Hub._call_service,
     frames.ControlPlayback: Hub._control_playback,

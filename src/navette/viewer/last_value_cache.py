@@ -8,6 +8,8 @@ publishers keep the last message.
 from collections import deque
 from dataclasses import dataclass, field
 
+from navette.viewer.large_grid import Payload
+
 #: Small types whose messages are a state: each replaces the one before. The view
 #: subscribes to their topics while they have a publisher. Goals and poses
 #: (PointStamped, PoseStamped) are excluded: they are commands, and a publisher that
@@ -31,7 +33,7 @@ _STREAM_NS = 5_000_000_000
 
 @dataclass
 class _Topic:
-    last: tuple[int, bytes] | None = None
+    last: tuple[int, Payload] | None = None
     stamps: deque[int] = field(default_factory=lambda: deque(maxlen=_STREAM_MESSAGES))
 
 
@@ -57,7 +59,7 @@ class LastValueCache:
     def __contains__(self, channel: int) -> bool:
         return channel in self._topics
 
-    def store(self, channel: int, stamp_ns: int, payload: bytes) -> None:
+    def store(self, channel: int, stamp_ns: int, payload: Payload) -> None:
         """Store a message; a channel with frequent or large messages is dropped."""
         topic = self._topics.get(channel)
         if topic is None:
@@ -74,7 +76,7 @@ class LastValueCache:
             del self._topics[channel]
             self._streams.add(channel)
 
-    def last(self, channel: int) -> tuple[int, bytes] | None:
+    def last(self, channel: int) -> tuple[int, Payload] | None:
         topic = self._topics.get(channel)
         return None if topic is None else topic.last
 

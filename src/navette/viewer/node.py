@@ -27,6 +27,7 @@ from navette.errors import (
     UnknownNameError,
 )
 from navette.msgs import definition_text, get_interface, serialize
+from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from navette.msgs.sensor_msgs.msg import CompressedImage, Image
 from navette.params import Params
@@ -52,6 +53,7 @@ from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.gate import Gate
 from navette.viewer.graph_access import LocalNode
 from navette.viewer.hub import Hub
+from navette.viewer.large_grid import Payload, payload_of
 from navette.viewer.layout import build_layout
 from navette.viewer.listening import Listeners, listen
 from navette.viewer.node_monitor import NodeMonitor
@@ -287,12 +289,15 @@ class ViewerNode(StageNode):
             self._watched[watch] = self._compress(watch)
             return
         try:
+            interface = get_interface(channel.type_name)
+            is_grid = interface is OccupancyGrid
             self._watched[watch] = self.create_subscription(
-                get_interface(channel.type_name),
+                interface,
                 channel.topic,
-                partial(self._forward, watch),
+                partial(self._forward_grid if is_grid else self._forward, watch),
                 qos_profile_best_available,  # latched messages too
-                raw=True,  # forwarded without decoding
+                raw=not is_grid,  # forwarded without decoding
+                shared=is_grid,
                 other_types=self.context.graph.topics().get(channel.topic, ()),
             )
         except NavetteError as error:  # the topic changed after it was advertised
@@ -353,8 +358,11 @@ class ViewerNode(StageNode):
     def step_playback(self, client: int) -> None:
         self._execute(client, self._playback.step)
 
-    def _forward(self, watch: Watch, payload: bytes) -> None:
+    def _forward(self, watch: Watch, payload: Payload) -> None:
         self._server.offer(watch, self.now_ns, payload)
+
+    def _forward_grid(self, watch: Watch, grid: OccupancyGrid) -> None:
+        self._forward(watch, payload_of(grid))
 
     @property
     def now_ns(self) -> int:

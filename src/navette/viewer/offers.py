@@ -5,11 +5,12 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable
 
+from navette.viewer.large_grid import Payload
 from navette.viewer.session import Watch
 
 _MAX_QUEUED = 64 * 2**20  # bytes
 
-Offer = tuple[Watch, int, bytes]
+Offer = tuple[Watch, int, Payload]
 """A message for the clients of a watch: watch, stamp in ns, payload."""
 
 DeliverOffers = Callable[[Iterable[Offer]], None]
@@ -33,7 +34,7 @@ class OfferQueue:
         self._size = 0
         self._scheduled = False
 
-    def add(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
+    def add(self, watch: Watch, stamp_ns: int, payload: Payload) -> None:
         with self._lock:
             self._queued.append((watch, stamp_ns, payload))
             self._size += len(payload)

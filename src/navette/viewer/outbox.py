@@ -1,10 +1,11 @@
 """Bounded send queue of one client; the newest frames are kept."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 from navette.viewer import replies
+from navette.viewer.large_grid import LargeGrid, Payload
 
 Frame = str | bytes
 Parts = list[bytes | memoryview]
@@ -19,7 +20,7 @@ class MessageFrame:
 
     subscription_id: int
     stamp_ns: int
-    payload: bytes
+    payload: Payload
 
     def __len__(self) -> int:
         return len(self.payload)
@@ -31,9 +32,12 @@ class MessageFrame:
         robot's nodes in the same process.
         """
         head = replies.message_head(self.subscription_id, self.stamp_ns)
-        if len(self.payload) <= _PART_BYTES:
+        if isinstance(self.payload, LargeGrid):
+            head, view = head + self.payload.head, self.payload.cells
+        elif len(self.payload) <= _PART_BYTES:
             return head + self.payload
-        view = memoryview(self.payload)
+        else:
+            view = memoryview(self.payload)
         starts = range(0, len(view), _PART_BYTES)
         return [head, *(view[start : start + _PART_BYTES] for start in starts)]
 
@@ -69,6 +73,7 @@ class Outbox:
         self._sending = 0
         self._streams: dict[Hashable, _Stream] = {}
         self._turns: deque[Hashable] = deque()
+        self._lost = Counter[Hashable]()
         self.dropped = 0
         self.overflowed = False
 
@@ -125,8 +130,14 @@ class Outbox:
         if not waiting.frames:
             del self._streams[stream]
         self.dropped += 1
+        self._lost[stream] += 1
+
+    def lost(self, stream: Hashable) -> int:
+        """Return the number of frames of a stream that were dropped."""
+        return self._lost[stream]
 
     def forget(self, stream: Hashable) -> None:
+        del self._lost[stream]
         waiting = self._streams.pop(stream, None)
         if waiting is not None:
             self._data_size -= waiting.size

@@ -25,6 +25,7 @@ from navette.viewer.connection import BoundedConnection, ConnectionLimit, bounde
 from navette.viewer.frames import MAX_BINARY, SUBPROTOCOLS
 from navette.viewer.gate import Gate, WebRequest
 from navette.viewer.hub import Hub
+from navette.viewer.large_grid import Payload
 from navette.viewer.listening import Listeners, port_of
 from navette.viewer.liveness import PERIOD_S
 from navette.viewer.login import Visitor
@@ -130,7 +131,7 @@ class ViewerServer:
 
         self.call(schedule)
 
-    def offer(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
+    def offer(self, watch: Watch, stamp_ns: int, payload: Payload) -> None:
         """Queue a message for its clients; drops the oldest when the queue is full."""
         self._offers.add(watch, stamp_ns, payload)
 

@@ -5,8 +5,9 @@ from typing import Protocol
 
 from navette.viewer import replies
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
+from navette.viewer.grid_copies import GridCopies
 from navette.viewer.last_value_cache import STATE_TYPES
-from navette.viewer.outbox import Outbox
+from navette.viewer.outbox import MessageFrame, Outbox
 from navette.viewer.replies import Channel, Level, OfferedService
 
 
@@ -97,6 +98,15 @@ class Session:
     suspended_channels: set[int] = field(default_factory=set)
     pending: int = 0
     calls: set[CallId] = field(default_factory=set)  # of services, without a response
+    grid_copies: GridCopies | None = None
+    """of a client that applies updates to grids"""
+
+    def put(self, channel: Channel, frame: MessageFrame) -> None:
+        """Queue a message of a subscription."""
+        if self.grid_copies is None:
+            self.outbox.put_data(frame.subscription_id, frame)
+        else:
+            self.grid_copies.put(channel, frame)
 
     def send(self, frame: str | bytes) -> None:
         self.outbox.put_control(frame)

@@ -382,6 +382,19 @@ def test_keys_encrypt_the_live_view_and_replace_the_token(
             Client(program.address)  # not encrypted
 
 
+def test_tls_1_3_serves_the_page(
+    other_users: None, keys: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NAVETTE_SECURITY", str(keys / "robot"))
+    monkeypatch.setenv("NAVETTE_VIEW_TOKEN", TOKEN)
+    context = ssl.create_default_context(cafile=keys / "ca.pem")
+    context.minimum_version = ssl.TLSVersion.TLSv1_3
+    with Program(talker, host="0.0.0.0") as program:
+        address = f"https://{program.address}/health?token={TOKEN}"
+        with urllib.request.urlopen(address, context=context) as health:
+            assert json.load(health)["status"] == "ok"
+
+
 def test_certificates_of_another_authority_are_refused(
     other_users: None, keys: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

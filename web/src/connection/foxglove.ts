@@ -20,6 +20,8 @@ import { TopicStore } from "./topic_store";
 const RETRY_MS = [500, 1000, 2000, 3000];
 /** A page in the background for this long gives up its subscriptions. */
 const HIDDEN_MS = 5000;
+/** What Navette's server offers to this page. */
+const OWN_OPERATIONS = ["subscribeNodes", "applyGridUpdates"];
 const LEVELS = ["info", "warning", "error"] as const;
 
 interface Link {
@@ -210,7 +212,7 @@ export class FoxgloveConnection implements Connection {
     if (can("connectionGraph")) client.subscribeConnectionGraph();
     if (can("parametersSubscribe")) client.subscribeParameterUpdates([]);
     if (can("parameters")) client.getParameters([], "all");
-    if (info.name === "Navette") this.#link?.socket.send('{"op":"subscribeNodes"}');
+    if (info.name === "Navette") for (const op of OWN_OPERATIONS) this.#link?.socket.send(JSON.stringify({ op }));
     this.#later("playback", () => this.#playback.state);
   }
 

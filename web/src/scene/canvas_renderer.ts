@@ -10,10 +10,16 @@ import { cornersOf } from "./solids";
 /** More points than this are painted as pixels. */
 const MANY_POINTS = 3000;
 
+interface Image {
+  readonly canvas: HTMLCanvasElement;
+  /** Number of the raster's changes that it contains. */
+  changes: number;
+}
+
 export class CanvasRenderer implements Renderer {
   readonly #context: CanvasRenderingContext2D;
   readonly #clouds = new CloudPainter();
-  readonly #images = new WeakMap<Raster, HTMLCanvasElement>();
+  readonly #images = new WeakMap<Raster, Image>();
   #scale = 1;
   #sky = "";
 
@@ -109,15 +115,21 @@ export class CanvasRenderer implements Renderer {
   }
 
   #image(raster: Raster): HTMLCanvasElement {
+    const { columns, rows, changes } = raster;
     let image = this.#images.get(raster);
+    if (image && image.changes === changes.length) return image.canvas;
+    const pixels = new ImageData(raster.pixels, columns, rows);
     if (!image) {
-      image = document.createElement("canvas");
-      image.width = raster.columns;
-      image.height = raster.rows;
-      image.getContext("2d")?.putImageData(new ImageData(raster.pixels, raster.columns, raster.rows), 0, 0);
-      this.#images.set(raster, image);
+      const canvas = document.createElement("canvas");
+      canvas.width = columns;
+      canvas.height = rows;
+      canvas.getContext("2d")?.putImageData(pixels, 0, 0);
+      this.#images.set(raster, (image = { canvas, changes: changes.length }));
     }
-    return image;
+    const context = image.canvas.getContext("2d");
+    for (const { x, y, width, height } of changes.slice(image.changes)) context?.putImageData(pixels, 0, 0, x, y, width, height);
+    image.changes = changes.length;
+    return image.canvas;
   }
 
   #points(points: Points, pose: Transform): void {

@@ -27,6 +27,15 @@ export interface OccupancyGrid {
   info: { resolution: number; width: number; height: number; origin: Pose };
   data: Int8Array | number[];
 }
+/** map_msgs/OccupancyGridUpdate: new values of some cells. */
+export interface GridUpdate {
+  header: Header;
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+  data: Int8Array | number[];
+}
 export interface LaserScan {
   header: Header;
   angle_min: number;

@@ -10,6 +10,14 @@ import type { Placement } from "./placement";
 /** A CSS colour: `#rrggbb`, `#rrggbbaa` or `rgb(…)`. */
 export type Colour = string;
 
+/** A part of an image: first column and row, and how many. */
+export interface Patch {
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
+}
+
 /** An image on a plane; its lower left corner is the origin of `pose`. */
 export interface Raster {
   readonly kind: "raster";
@@ -20,6 +28,8 @@ export interface Raster {
   readonly rows: number;
   /** RGBA, row 0 at the origin. */
   readonly pixels: Uint8ClampedArray<ArrayBuffer>;
+  /** Where the pixels have changed since the raster was made: grows. */
+  readonly changes: readonly Patch[];
 }
 
 export interface Points {

@@ -38,6 +38,8 @@ interface Built {
   readonly materials: Material[];
   /** A sign keeps its size on the screen: pixels, or 0. */
   readonly sizePx: number;
+  /** Take over what has changed in the primitive. */
+  readonly update?: () => void;
 }
 
 export class ThreeRenderer implements Renderer {
@@ -91,6 +93,7 @@ export class ThreeRenderer implements Renderer {
         used.add(primitive);
         const built = this.#objectOf(primitive);
         if (!built) continue;
+        built.update?.();
         moveTo(built.object, fixed_T_part, lift);
         built.object.renderOrder = order;
         if (built.sizePx > 0) built.object.children[0]?.scale.setScalar(built.sizePx * perPx);
@@ -210,14 +213,19 @@ function wrap(inner: Object3D, pose: Transform | null, materials: Material[], si
   return { object, materials, sizePx };
 }
 
-function rasterOf({ pose, widthM, heightM, columns, rows, pixels }: Raster): Built {
+function rasterOf({ pose, widthM, heightM, columns, rows, pixels, changes }: Raster): Built {
   const texture = new DataTexture(new Uint8Array(pixels.buffer), columns, rows);
   texture.colorSpace = SRGBColorSpace;
   texture.magFilter = texture.minFilter = NearestFilter;
   texture.needsUpdate = true;
   const material = flat({ map: texture });
   const geometry = new PlaneGeometry(widthM, heightM).translate(widthM / 2, heightM / 2, 0);
-  return wrap(new Mesh(geometry, material), pose, [material]);
+  let drawn = changes.length;
+  const update = (): void => {
+    if (changes.length > drawn) texture.needsUpdate = true;
+    drawn = changes.length;
+  };
+  return { ...wrap(new Mesh(geometry, material), pose, [material]), update };
 }
 
 function pointsOf({ positions, colours, colour, sizePx }: PointSet): Built {

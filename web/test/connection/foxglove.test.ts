@@ -35,7 +35,7 @@ describe("connecting", () => {
     FakeServer.last.welcome();
     expect(connection.status).toEqual({ state: "live", reason: "" });
     const operations = FakeServer.last.sent.map((each) => (each as Record<string, unknown>)["op"]);
-    expect(operations).toEqual(["subscribeConnectionGraph", "subscribeParameterUpdates", "getParameters", "subscribeNodes"]);
+    expect(operations).toEqual(["subscribeConnectionGraph", "subscribeParameterUpdates", "getParameters", "subscribeNodes", "applyGridUpdates"]);
   });
 
   it("requests nothing of another server that has nothing", () => {

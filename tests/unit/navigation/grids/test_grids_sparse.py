@@ -76,11 +76,20 @@ def test_a_large_grid_returns_the_memory_of_its_copied_rows() -> None:
         written.add(CellWindow(row, row + 1, column, column + 1))
     before = grid.cells
     expected = before[rows, columns].copy()
-    grid.grow(((2100, 10), (20, 2100)), written)
-    assert grid.cells.shape == (4110, 4120)
+    grid.grow(((3100, 10), (20, 3100)), written)
+    assert grid.cells.shape == (5110, 5120)
     assert not np.shares_memory(before, grid.cells)
-    np.testing.assert_array_equal(grid.cells[rows + 2100, columns + 20], expected)
+    np.testing.assert_array_equal(grid.cells[rows + 3100, columns + 20], expected)
     assert np.count_nonzero(grid.cells) == len(np.unique(rows * 2000 + columns))
+
+
+def test_a_wide_grid_grows_far_without_a_copy() -> None:
+    grid = SparseGrid((1000, 800), np.uint64)
+    before = grid.cells
+    before[0, 0] = 7
+    grid.grow(((3000, 3000), (0, 3000)), RowSpans(1000))
+    assert np.shares_memory(before, grid.cells)
+    assert grid.cells[3000, 0] == 7
 
 
 def test_a_cleared_grid_keeps_its_extent() -> None:

@@ -1,22 +1,89 @@
-/** nav_msgs/OccupancyGrid: a map, or a costmap with its cost in colour. */
+/**
+ * nav_msgs/OccupancyGrid: a map, or a costmap with its cost in colour. Updates of its cells are on
+ * `<topic>_updates`, as for RViz: the server sends a large grid whole only if they do not suffice.
+ */
 
+import type { Dispose } from "../../connection/connection";
+import { nanosecondsOf } from "../../transforms/stamp";
 import { Display } from "../display";
-import { transformOf, type OccupancyGrid } from "../messages";
-import { rgba, type Hit, type Part, type Raster } from "../primitives";
+import { transformOf, type GridUpdate, type Header, type OccupancyGrid } from "../messages";
+import { rgba, type Hit, type Part, type Patch, type Raster } from "../primitives";
+import { unionOf, type Box } from "../viewing";
+
+const UPDATE = "map_msgs/msg/OccupancyGridUpdate";
+/** Updates that are kept for a grid from before them, which is delivered after them. */
+const MOST_KEPT = 20;
 
 export class GridMapDisplay extends Display<OccupancyGrid> {
-  #box: readonly [number, number, number, number] | null = null;
+  #box: Box | null = null;
   #isCounted = false;
+  #raster: Raster | null = null;
+  #changes: Patch[] = [];
+  #updates: GridUpdate[] = [];
+  #endUpdates: Dispose | null = null;
+
+  override update(): void {
+    super.update();
+    if (this.topic === null || !this.isVisible) return;
+    this.#endUpdates ??= this.around.connection.subscribe<GridUpdate>(`${this.topic}_updates`, { every: true }, (message) => {
+      if (message.type === UPDATE) this.#takeUpdate(message.value);
+    });
+  }
+
+  override dispose(): void {
+    this.#endUpdates?.();
+    this.#endUpdates = null;
+    super.dispose();
+  }
+
+  override clear(): void {
+    this.#updates = [];
+    super.clear();
+  }
 
   protected override take(value: OccupancyGrid): void {
+    if (this.message && isBefore(value.header, this.message.header)) this.#updates = []; // another run
     this.message = value;
+    this.#raster = null;
     this.#isCounted = false;
+    this.#updates = this.#updates.filter((each) => isBefore(value.header, each.header));
+    for (const each of this.#updates) this.#change(value, each);
+  }
+
+  #takeUpdate(update: GridUpdate): void {
+    const grid = this.message;
+    this.#updates = [...this.#updates, update].slice(-MOST_KEPT);
+    if (!grid || !isBefore(grid.header, update.header)) return;
+    this.receivedMs = performance.now();
+    this.#change(grid, update);
+    this.around.invalidate();
+  }
+
+  /** Change cells in place: a copy of 16 MB would take longer than all else. */
+  #change({ header, info, data }: OccupancyGrid, update: GridUpdate): void {
+    const { x, y, width, height } = update;
+    const isWithin = x >= 0 && y >= 0 && x + width <= info.width && y + height <= info.height;
+    if (header.frame_id !== update.header.frame_id || !isWithin || update.data.length !== width * height) return;
+    for (let row = 0; row < height; row++) {
+      const begin = (y + row) * info.width + x;
+      for (let column = 0; column < width; column++) data[begin + column] = update.data[row * width + column]!;
+    }
+    if (this.#isCounted) {
+      const boxes = [this.#box, knownBox({ info, data }, update)];
+      this.#box = unionOf(boxes.filter((each) => each !== null));
+    }
+    if (!this.#raster) return;
+    this.#paint(this.#raster.pixels, { info, data }, update);
+    this.#changes.push({ x, y, width, height });
   }
 
   protected override build(): Part[] {
     const grid = this.message;
     if (!grid || grid.info.width * grid.info.height === 0) return [];
     const { width, height, resolution, origin } = grid.info;
+    const pixels = new Uint8ClampedArray(4 * width * height);
+    this.#paint(pixels, grid, { x: 0, y: 0, width, height });
+    this.#changes = [];
     const raster: Raster = {
       kind: "raster",
       pose: transformOf(origin),
@@ -24,18 +91,22 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
       heightM: height * resolution,
       columns: width,
       rows: height,
-      pixels: this.#paint(grid),
+      pixels,
+      changes: this.#changes,
     };
+    this.#raster = raster;
     return [{ frame: grid.header.frame_id, primitives: [raster], about: (_, hit) => aboutCell(grid, hit) }];
   }
 
-  #paint({ data, info }: OccupancyGrid): Uint8ClampedArray<ArrayBuffer> {
+  #paint(pixels: Uint8ClampedArray<ArrayBuffer>, { data, info }: Cells, { x, y, width, height }: Patch): void {
     const table = this.choice === "cost" ? this.#costTable() : this.#mapTable();
-    const words = new Uint32Array(info.width * info.height);
-    const count = Math.min(words.length, data.length);
-    // -1 is unknown: transparent, as all values beyond 100.
-    for (let index = 0; index < count; index++) words[index] = table[data[index]! & 255]!;
-    return new Uint8ClampedArray(words.buffer);
+    const words = new Uint32Array(pixels.buffer);
+    for (let row = y; row < y + height; row++) {
+      const begin = row * info.width + x;
+      const end = Math.min(begin + width, data.length);
+      // -1 is unknown: transparent, as all values beyond 100.
+      for (let index = begin; index < end; index++) words[index] = table[data[index]! & 255]!;
+    }
   }
 
   /** Free to occupied, as the theme has them. */
@@ -58,7 +129,7 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
   }
 
   /** The known cells only. */
-  override bounds(): readonly [number, number, number, number] | null {
+  override bounds(): Box | null {
     if (!this.message) return null;
     if (!this.#isCounted) {
       this.#box = knownBox(this.message);
@@ -73,6 +144,12 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
   }
 }
 
+type Cells = Pick<OccupancyGrid, "info" | "data">;
+
+function isBefore(a: Header, b: Header): boolean {
+  return nanosecondsOf(a.stamp) < nanosecondsOf(b.stamp);
+}
+
 function table(colour: (cost: number) => number[]): Uint32Array {
   const bytes = new Uint8ClampedArray(1024);
   for (let cost = 0; cost <= 100; cost++) bytes.set(colour(cost), 4 * cost);
@@ -84,15 +161,16 @@ function mix(a: readonly number[], b: readonly number[], share: number): [number
   return [part(0), part(1), part(2)];
 }
 
-/** Left, low, right and high of the known cells, in metres of the map's frame. */
-export function knownBox({ data, info }: OccupancyGrid): readonly [number, number, number, number] | null {
+/** Left, low, right and high of the known cells in a part, in metres of the map's frame. */
+export function knownBox({ data, info }: Cells, part: Patch = { x: 0, y: 0, ...info }): Box | null {
   let [left, right, low, high] = [info.width, -1, info.height, -1];
-  for (let row = 0; row < info.height; row++) {
+  const end = part.x + part.width;
+  for (let row = part.y; row < part.y + part.height; row++) {
     const begin = row * info.width;
-    let first = 0;
-    while (first < info.width && data[begin + first]! < 0) first++;
-    if (first === info.width) continue;
-    let last = info.width - 1;
+    let first = part.x;
+    while (first < end && data[begin + first]! < 0) first++;
+    if (first === end) continue;
+    let last = end - 1;
     while (data[begin + last]! < 0) last--;
     left = Math.min(left, first);
     right = Math.max(right, last);
