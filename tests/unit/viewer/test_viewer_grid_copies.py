@@ -71,7 +71,7 @@ class Page:
         program = RecordingProgram()
         self.hub = Hub(program, DirectCommands(), name="test", session_id="1")
         self.hub.set_topics([MAP, UPDATES])
-        self.session: Session = self.hub.join(Outbox(depth=2))
+        self.session: Session = self.hub.join(Outbox(depth=2, data_bytes=300_000))
         if applies_updates:
             self.ask(op="applyGridUpdates")
         channels = {each.topic: each for each in self.hub.channels}
@@ -147,6 +147,17 @@ def test_after_a_lost_update_the_next_grid_is_sent(page: Page) -> None:
     page.hub.message(page.map, 5, payload_of(grid(5)))
     assert page.has_grid()
     page.publish(6)
+    assert not page.has_grid()
+
+
+def test_after_a_lost_grid_the_next_one_is_sent(page: Page) -> None:
+    page.hub.message(page.map, 3, payload_of(grid(3)))
+    page.session.outbox.put_data("camera", b"i" * 100_000)  # too much with the grid
+    assert page.session.outbox.lost(MAP_ID) == 1
+    assert not page.has_grid()
+    page.publish(4)
+    assert page.has_grid()
+    page.publish(5)
     assert not page.has_grid()
 
 
