@@ -288,3 +288,38 @@ def test_an_interrupted_process_ends_at_once(network: Network, signum: int) -> N
     # As Python ends on a Ctrl-C, and ROS 2 on SIGTERM; nothing hangs or crashes.
     assert code == (-signal.SIGINT if signum == signal.SIGINT else 0)
     assert "panicked" not in errors
+
+
+INTERRUPTED = """
+import signal, threading, zenoh
+from navette.transports.zenoh.callbacks import direct
+
+def on_token(token):
+    on_main = threading.current_thread() is threading.main_thread()
+    print("on the main thread:", on_main, flush=True)
+    signal.raise_signal(signal.SIGINT)
+
+config = zenoh.Config()
+config.insert_json5("scouting/multicast/enabled", "false")
+config.insert_json5("listen/endpoints", "[]")
+session = zenoh.open(config)
+liveliness = session.liveliness()
+subscriber = liveliness.declare_subscriber("a/**", direct(on_token))
+try:
+    token = liveliness.declare_token("a/b")
+    threading.Event().wait(LIMIT_S)
+    print("went on")
+except KeyboardInterrupt:
+    print("interrupted")
+session.close()
+"""
+
+
+def test_an_interrupt_in_a_callback_of_zenoh_is_not_lost() -> None:
+    """Zenoh calls the thread that declares a token, prints errors and goes on."""
+    script = INTERRUPTED.replace("LIMIT_S", str(LIMIT_S))
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False
+    )
+    assert done.stdout.splitlines() == ["on the main thread: True", "interrupted"]
+    assert done.stderr == ""
