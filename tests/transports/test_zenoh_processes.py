@@ -316,7 +316,7 @@ session.close()
 
 
 def test_an_interrupt_in_a_callback_of_zenoh_is_not_lost() -> None:
-    """Zenoh calls the thread that declares a token, prints errors and goes on."""
+    """Zenoh calls the thread that declares a token, and prints errors there."""
     script = INTERRUPTED.replace("LIMIT_S", str(LIMIT_S))
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False
