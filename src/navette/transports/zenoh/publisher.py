@@ -1,5 +1,6 @@
 """Publishers: serialise once a message, and only while a remote subscription exists."""
 
+import contextlib
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -12,6 +13,7 @@ from navette.transports.base import PublisherPort
 from navette.transports.encoded import Encoded
 from navette.transports.lockstep import PublisherCount
 from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.kept_sample import KeptSample, Sample
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_publisher
 from navette.transports.zenoh.shared_memory import MIN_BYTES
@@ -23,7 +25,9 @@ class ZenohPublisher(PublisherPort):
     A publisher that keeps samples (transient local or with retransmission) sends every
     sample, so that its cache is complete. It is declared with its first sample, because
     its cache costs every other session two declarations: each node has one such
-    publisher for its log, and many nodes never log.
+    publisher for its log, and many nodes never log. If it keeps one sample only, it
+    begins with the first remote subscription; until then :class:`KeptSample` holds the
+    sample.
 
     Args:
         retransmits: whether subscriptions can fetch the samples that they missed.
@@ -44,6 +48,11 @@ class ZenohPublisher(PublisherPort):
         self._owner = owner
         self._entity = entity
         self._keeps_samples = entity.qos.is_latched or retransmits
+        # More than one sample would be divided between two caches, without an order.
+        self._is_lazy = (
+            entity.qos.is_latched and retransmits and entity.qos.queue_length == 1
+        )
+        self._kept: KeptSample | None = None
         self._sent_count = sent_count
         self._is_open = True
         self._lock = threading.Lock()
@@ -67,19 +76,27 @@ class ZenohPublisher(PublisherPort):
             self.matches.remotes or self._keeps_samples or self._is_awaited(source_ns)
         ):
             return
-        attachment = Attachment(sequence, source_ns, self._entity.gid).encode()
         data: Any = message.data if message.__class__ is Encoded else serialize(message)
+        if self._is_lazy and self._is_kept(data, source_ns, sequence):
+            return
         if len(data) >= MIN_BYTES and not self._keeps_samples:
             # A cache would keep the shared memory.
             data = self._owner.session.shared_pools.stored(data)
         try:
-            self._put(data, attachment=attachment)
+            self._put(data, attachment=self._attachment(source_ns, sequence))
         except zenoh.ZError:
             if self._is_open and not self._owner.session.zenoh.is_closed():
                 raise
             return  # closed meanwhile by another thread
         if self._sent_count is not None:
             self._sent_count.add(sequence)
+
+    def hand_over(self, message: Any, source_ns: int, sequence: int) -> None:
+        if not (self._is_lazy and self._is_kept(message, source_ns, sequence)):
+            self.send(message, source_ns, sequence)
+
+    def _attachment(self, source_ns: int, sequence: int) -> bytes:
+        return Attachment(sequence, source_ns, self._entity.gid).encode()
 
     def _is_awaited(self, now_ns: int) -> bool:
         """Return whether a subscriber exists whose token is still unread (2 µs)."""
@@ -91,6 +108,29 @@ class ZenohPublisher(PublisherPort):
             return publisher is not None and bool(publisher.matching_status.matching)
         except zenoh.ZError:  # the session was closed
             return False
+
+    def _is_kept(self, message: Any, source_ns: int, sequence: int) -> bool:
+        """Keep a message for late joiners, until a remote subscription exists.
+
+        Args:
+            message: is not changed any more; may be CDR.
+        """
+        self.last = sequence
+        sample = Sample(message, self._attachment(source_ns, sequence))
+        with self._lock:
+            if not (self._is_lazy and self._is_open):
+                return False
+            with contextlib.suppress(zenoh.ZError):  # sending raises it, if at all
+                if not self.matches.remotes and self._newest().replace(sample):
+                    return True
+            self._is_lazy = False
+        return False
+
+    def _newest(self) -> KeptSample:
+        if self._kept is None:
+            session = self._owner.session
+            self._kept = KeptSample(session.zenoh, self._entity.key, session.log_once)
+        return self._kept
 
     def assert_alive(self) -> bool:
         return self._owner.assert_liveliness(self.matches)
@@ -107,12 +147,14 @@ class ZenohPublisher(PublisherPort):
         with self._lock:
             if not self._is_open:
                 return
-            self._is_open = self._keeps_samples = False
+            self._is_open = self._keeps_samples = self._is_lazy = False
             publisher, self._publisher = self._publisher, None
+            kept, self._kept = self._kept, None
             self._put = self._declare_and_put  # does nothing from here on
         self._owner.release(self)  # no remote matches from here on: nothing is sent
-        if publisher is not None:
-            publisher.undeclare()
+        for each in (publisher, kept):
+            if each is not None:
+                each.undeclare()
 
     def _declare_and_put(self, data: Any, *, attachment: bytes) -> None:
         with self._lock:
@@ -120,5 +162,23 @@ class ZenohPublisher(PublisherPort):
                 return
             if self._publisher is None:
                 self._publisher = self._declare()
-            put = self._put = self._publisher.put
-        put(data, attachment=attachment)
+            put, kept = self._publisher.put, self._kept
+            if kept is None:
+                self._put = put
+        if kept is None:
+            put(data, attachment=attachment)
+        else:
+            self._put_after(kept, partial(put, data, attachment=attachment))
+
+    def _put_after(self, kept: KeptSample, put: Callable[[], None]) -> None:
+        """Send a sample that follows the kept one, and end that one."""
+        kept.end()
+        if kept.defers(put):
+            return
+        put()
+        with self._lock:
+            is_first = self._kept is kept
+            if is_first:
+                self._kept = None
+        if is_first:
+            kept.undeclare()
