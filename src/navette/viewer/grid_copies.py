@@ -2,8 +2,7 @@
 
 Updates (``map_msgs/OccupancyGridUpdate``) of a grid are on ``<topic>_updates``.
 Publishers such as the map memory publish the whole grid after each of them, with the
-same stamp. To a client that has received both subscriptions, it is sent only if the
-updates did not suffice.
+same stamp. A client that subscribes to both gets it only if updates did not suffice.
 """
 
 from typing import NamedTuple
