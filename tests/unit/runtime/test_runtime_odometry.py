@@ -1,14 +1,17 @@
 """Poses of the base in the map frame from odometry of several frames."""
 
 import math
+from typing import Any
 
 import pytest
 
 from navette.geometry import Pose2, Transform3, quaternion_from_yaw
+from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime import Node, ns_to_stamp
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.stage_node import Input, StageNode
 from navette.runtime.testing import GraphHarness
 from navette.runtime.tf import StaticTransformBroadcaster, TransformBroadcaster
 from navette.runtime.tf.conversions import transform_stamped
@@ -84,6 +87,29 @@ def test_odometry_of_a_sensor_is_converted_to_the_base(
     assert tracker.latest == pytest.approx((1.3, 3.7, math.pi / 2))
     # Turning, the lidar swings sideways; the axle only rolls.
     assert tracker.velocity == pytest.approx((0.5, 0.4))
+
+
+class Stage(StageNode):
+    INPUTS = (Input.of(topics.ODOMETRY, "pose", callback="on_odometry"),)
+
+    def on_odometry(self, msg: Odometry) -> None:
+        self.poses.update(msg)
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("stage", **kwargs)
+        self.poses = PoseTracker(self, "base_link", "map")
+
+
+def test_missing_frames_are_reported_once_their_publisher_has_had_time_to_start(
+    graph: GraphHarness,
+) -> None:
+    stage = graph.add(Stage(context=graph.context))
+    message = odometry(S, Pose2(0, 0, 0), child="nowhere")
+    graph.publish_every(0.1, topics.ODOMETRY.name, lambda _: message)
+    graph.run_for(1.9)
+    assert not stage.dropped_inputs
+    graph.run_for(1.0)
+    assert set(stage.dropped_inputs) == {(topics.ODOMETRY.name, "unknown_frame")}
 
 
 def test_velocity_of_a_rotated_sensor(

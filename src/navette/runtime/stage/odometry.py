@@ -18,7 +18,7 @@ _LONGEST_PREDICTION_S = 0.25
 _CARRIED_M = 1.0
 # A correction of map_T_odom that moves the robot further is a jump.
 _JUMP_M, _JUMP_RAD = 0.15, 0.1
-# Time without map_T_odom after which that is reported.
+# Time without a transform after which that is reported.
 _STARTING_NS = 2_000_000_000
 
 
@@ -250,7 +250,7 @@ class PoseTracker:
                 self._moving_listener = TransformListener(
                     self.buffer, self._node, on_invalid=self._on_invalid
                 )
-            self._await_map(error)
+            self._await_frame(error)
             return None
         known = self._newest_transform
         if known is None or known[0] is not transform:
@@ -258,8 +258,8 @@ class PoseTracker:
             self._newest_transform = known
         return known[1]
 
-    def _await_map(self, error: TransformException) -> None:
-        """Report a missing map_T_odom, unless its publisher may be starting."""
+    def _await_frame(self, error: TransformException) -> None:
+        """Report a missing transform, unless its publisher may be starting."""
         now_ns = self._node.get_clock().now().nanoseconds
         if self._waits_since_ns is None or now_ns < self._waits_since_ns:
             self._waits_since_ns = now_ns
@@ -272,7 +272,7 @@ class PoseTracker:
         try:
             return self.buffer.lookup(target, source, 0)
         except TransformException as error:
-            self._drop("unknown_frame", str(error))
+            self._await_frame(error)
             return None
 
     def _drop_pose(self, map_T_base: Pose2) -> None:
