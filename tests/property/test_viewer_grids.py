@@ -73,10 +73,10 @@ class Page:
         self.hub = Hub(
             RecordingProgram(), DirectCommands(), name="test", session_id="1"
         )
-        self.hub.set_topics([MAP, UPDATES])
+        self.hub.subscriptions.set_topics([MAP, UPDATES])
         self.session = self.hub.join(Outbox(depth=depth))
         self._ask(op="applyGridUpdates")
-        channels = {each.topic: each for each in self.hub.channels}
+        channels = {each.topic: each for each in self.hub.subscriptions.channels}
         self.map = Watch(channels["/map"], self.session.id)
         self.updates = Watch(channels["/map_updates"], None)
         self._ids = itertools.count(1)
@@ -145,8 +145,8 @@ def test_a_client_has_the_last_grid(depth: int, steps: list[str], seed: int) -> 
 
     def publish(update: OccupancyGridUpdate | None) -> None:
         if update is not None:
-            page.hub.message(page.updates, 0, serialize(update))
-        page.hub.message(page.map, 0, LargeGrid(publisher.grid()))
+            page.hub.subscriptions.message(page.updates, 0, serialize(update))
+        page.hub.subscriptions.message(page.map, 0, LargeGrid(publisher.grid()))
 
     for step in [*steps, "change", "read"]:
         if step == "read":
@@ -155,7 +155,7 @@ def test_a_client_has_the_last_grid(depth: int, steps: list[str], seed: int) -> 
             page.go_back()
         elif step == "map":  # the graph delivers the latched grid again
             page.subscribe_again(page.map)
-            page.hub.message(page.map, 0, LargeGrid(publisher.grid()))
+            page.hub.subscriptions.message(page.map, 0, LargeGrid(publisher.grid()))
         elif step == "updates":
             page.subscribe_again(page.updates)
         elif step == "change":

@@ -213,8 +213,8 @@ class ViewerNode(StageNode):
         topics = topics_of(ends, self._definition)
         services = (self._offered(*key) for key in sorted({s[:2] for s in servers}))
         graph = graph_of(ends, ((service, node) for service, _, node in servers))
-        self._server.call(self._hub.set_topics, topics)
-        self._server.call(self._hub.set_services, [s for s in services if s])
+        self._server.call(self._hub.subscriptions.set_topics, topics)
+        self._server.call(self._hub.services.set_services, [s for s in services if s])
         self._server.call(self._hub.set_graph, graph)
         self._remote.set_nodes(self._serving_elsewhere())
 
@@ -444,7 +444,7 @@ class ViewerNode(StageNode):
             "status": "ok",
             "version": __version__,
             "clients": self._hub.clients,
-            "topics": len(self._hub.channels),
+            "topics": len(self._hub.subscriptions.channels),
             "time_s": self.now_ns / 1e9,
         }
 
@@ -452,12 +452,16 @@ class ViewerNode(StageNode):
 
     def _monitor_nodes(self) -> ParameterRequests:
         calls = ServiceCalls(graph=self, clock=self._wall)
-        self._services = ServiceRequests(self._hub, calls, bridge=self)
+        self._services = ServiceRequests(self._hub.services, calls, bridge=self)
         self._remote = RemoteParameters(
-            self._hub, bridge=self, graph=self, service_calls=calls, clock=self._wall
+            self._hub.reports,
+            bridge=self,
+            graph=self,
+            service_calls=calls,
+            clock=self._wall,
         )
         self._monitor = NodeMonitor(
-            self._hub,
+            self._hub.reports,
             bridge=self,
             graph=self,
             service_calls=calls,

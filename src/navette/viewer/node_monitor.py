@@ -5,8 +5,8 @@ program blocks, and it measures wall time whatever clock the program uses.
 """
 
 from navette.viewer.graph_access import GraphAccess
-from navette.viewer.hub import Hub
 from navette.viewer.liveness import LivenessProbe, NodeReport
+from navette.viewer.node_reports import NodeReports
 from navette.viewer.remote_parameters import RemoteParameters
 from navette.viewer.service_calls import ServiceCalls
 from navette.viewer.thread_bridge import ThreadBridge
@@ -21,7 +21,7 @@ class NodeMonitor:
 
     def __init__(
         self,
-        hub: Hub,
+        reports: NodeReports,
         *,
         bridge: ThreadBridge,
         graph: GraphAccess,
@@ -29,14 +29,14 @@ class NodeMonitor:
         remote: RemoteParameters,
         clock: WallClock,
     ) -> None:
-        self._hub = hub
+        self._reports = reports
         self._bridge = bridge
         self._graph = graph
         self._service_calls = service_calls
         self._remote = remote
         self._probe = LivenessProbe(service_calls, clock)
         self._clock = clock
-        self._reports: list[NodeReport] = []
+        self._newest: list[NodeReport] = []
         self._is_scheduled = False
         self._scheduled_s = 0.0
         self._is_active = False  # the probe has state to reset
@@ -46,27 +46,23 @@ class NodeMonitor:
         if self._is_scheduled:
             waited_s = self._clock.now_s - self._scheduled_s
             if waited_s > _BLOCKED_S:
-                self._hub.set_nodes(self._reports, waited_s)
-        elif (
-            self._hub.wants_node_reports
-            or self._is_active
-            or self._service_calls.pending
-        ):
+                self._reports.set_nodes(self._newest, waited_s)
+        elif self._reports.are_wanted or self._is_active or self._service_calls.pending:
             self._is_scheduled, self._scheduled_s = True, self._clock.now_s
             self._bridge.run_soon(self._check, "node monitor")
 
     def _check(self) -> None:
         self._is_scheduled = False
         self._service_calls.expire()
-        self._is_active = self._hub.wants_node_reports
+        self._is_active = self._reports.are_wanted
         if not self._is_active:
             self._probe.reset()
             return
         self._remote.fetch()
         here = {node.get_fully_qualified_name() for node in self._graph.local_nodes()}
         others = self._graph.node_names() - here
-        self._reports = self._probe.step(
+        self._newest = self._probe.step(
             {name for name in here if not is_hidden(name)},
             {name: self._remote.serves(name) for name in others if not is_hidden(name)},
         )
-        self._bridge.call_hub(self._hub.set_nodes, self._reports, 0.0)
+        self._bridge.call_hub(self._reports.set_nodes, self._newest, 0.0)

@@ -103,7 +103,7 @@ class ParameterRequests:
     def describe(self, client: int) -> None:
         texts = [text for node in self._graph.local_nodes() for text in _texts_of(node)]
         texts += self._remote.texts.values()
-        self._bridge.call_hub(self._hub.set_parameter_texts, texts, client)
+        self._bridge.call_hub(self._hub.reports.set_parameter_texts, texts, client)
         self._bridge.call_hub(self._hub.done, client)
 
     def on_event(self, event: Any) -> None:
@@ -117,7 +117,7 @@ class ParameterRequests:
             return
         changes = [to_wire(wire_name(event.node, n), value_of(v)) for n, v in values]
         changes += [WireParameter(wire_name(event.node, n), None) for n in deleted]
-        self._bridge.call_hub(self._hub.parameters_changed, changes)
+        self._bridge.call_hub(self._hub.reports.parameters_changed, changes)
 
     def _all_parameters(self) -> dict[str, WireParameter]:
         return self._remote.values | {
@@ -135,7 +135,7 @@ class ParameterRequests:
     ) -> None:
         wanted = [n if n.startswith("/") else f"/{n}" for n in names] or list(found)
         values = [found[name] for name in wanted if name in found]
-        self._bridge.call_hub(self._hub.parameters, client, values, request_id)
+        self._bridge.call_hub(self._hub.reports.parameters, client, values, request_id)
 
     def _set_one(self, wire: WireParameter, done: OnEnd) -> None:
         """Call ``done`` with the reason if the parameter was not set, else with ""."""

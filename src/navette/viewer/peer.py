@@ -95,4 +95,4 @@ class Peer:
                     self._outbox.sent()
                     self.check_pending()
                 if self.session.is_suspended:
-                    self._hub.resume(self.session)
+                    self._hub.subscriptions.resume(self.session)

@@ -12,7 +12,7 @@ from typing import Any
 from navette.errors import NavetteError
 from navette.viewer.frames import WireParameter
 from navette.viewer.graph_access import GraphAccess
-from navette.viewer.hub import Hub
+from navette.viewer.node_reports import NodeReports
 from navette.viewer.parameters import (
     ParameterText,
     from_wire,
@@ -53,19 +53,19 @@ class _Remote:
 class RemoteParameters:
     """Cache of the parameters of nodes of other processes.
 
-    The hub receives values that are new, changed or (None) deleted, and descriptions.
+    Clients receive values that are new, changed or (None) deleted, and descriptions.
     """
 
     def __init__(
         self,
-        hub: Hub,
+        reports: NodeReports,
         *,
         bridge: ThreadBridge,
         graph: GraphAccess,
         service_calls: ServiceCalls,
         clock: WallClock,
     ) -> None:
-        self._hub = hub
+        self._reports = reports
         self._bridge = bridge
         self._graph = graph
         self._service_calls = service_calls
@@ -166,7 +166,7 @@ class RemoteParameters:
                 found = zip(names, response.descriptors, strict=False)
                 texts = [ParameterText.of(wire_name(node, n), d) for n, d in found]
                 self.texts |= {text.name: text for text in texts}
-                self._bridge.call_hub(self._hub.set_parameter_texts, texts)
+                self._bridge.call_hub(self._reports.set_parameter_texts, texts)
 
         wanted = {"names": names}
         self._call(f"{node}/describe_parameters", _DESCRIBE, wanted, described)
@@ -187,7 +187,7 @@ class RemoteParameters:
         self._changed(gone)
 
     def _changed(self, values: list[WireParameter]) -> None:
-        self._bridge.call_hub(self._hub.parameters_changed, values)
+        self._bridge.call_hub(self._reports.parameters_changed, values)
 
     # -- setting ---------------------------------------------------------------
 

@@ -249,7 +249,7 @@ class ViewerServer:
 
     def _deliver(self, offers: Iterable[Offer]) -> None:
         for watch, stamp_ns, payload in offers:
-            self._hub.message(watch, stamp_ns, payload)
+            self._hub.subscriptions.message(watch, stamp_ns, payload)
         self._wake_clients()
 
     def _wake_clients(self) -> None:
@@ -265,10 +265,10 @@ class ViewerServer:
 
     def _run_period(self) -> None:
         self._monitor.on_period()
-        self._hub.end_period()
+        self._hub.subscriptions.end_period()
         for peer in self._peers:
             if peer.is_stalled:
-                self._hub.suspend(peer.session)
+                self._hub.subscriptions.suspend(peer.session)
         self._wake_clients()
         if not self._stop.is_set():
             self._loop.call_later(PERIOD_S, self._run_period)

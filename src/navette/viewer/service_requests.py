@@ -7,7 +7,7 @@ from typing import Any
 
 from navette.errors import NavetteError
 from navette.msgs import get_interface, serialize, to_dict
-from navette.viewer.hub import Hub
+from navette.viewer.offered_services import OfferedServices
 from navette.viewer.publishing import decode_message
 from navette.viewer.replies import OfferedService
 from navette.viewer.service_calls import ServiceCalls
@@ -21,9 +21,14 @@ class ServiceRequests:
     """Calls services for clients; each call is answered once, in its own encoding."""
 
     def __init__(
-        self, hub: Hub, service_calls: ServiceCalls, *, bridge: ThreadBridge
+        self,
+        offered: OfferedServices,
+        service_calls: ServiceCalls,
+        *,
+        bridge: ThreadBridge,
     ) -> None:
-        self._hub, self._bridge, self._service_calls = hub, bridge, service_calls
+        self._offered, self._service_calls = offered, service_calls
+        self._bridge = bridge
 
     def call(
         self, call_id: CallId, service: OfferedService, encoding: str, data: bytes
@@ -50,10 +55,10 @@ class ServiceRequests:
             self._fail(call_id, f"{name}: {reason}")
             return
         data = serialize(response) if encoding == "cdr" else _json_of(response)
-        self._bridge.call_hub(self._hub.service_responded, call_id, encoding, data)
+        self._bridge.call_hub(self._offered.responded, call_id, encoding, data)
 
     def _fail(self, call_id: CallId, reason: str) -> None:
-        self._bridge.call_hub(self._hub.service_failed, call_id, reason)
+        self._bridge.call_hub(self._offered.failed, call_id, reason)
 
 
 def _json_of(response: Any) -> bytes:

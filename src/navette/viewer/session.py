@@ -1,14 +1,19 @@
 """One client of the live view, and the commands that the view sends to the program."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from functools import partial
+from typing import Any, Protocol
 
 from navette.viewer import replies
+from navette.viewer.command_queue import CommandRunner
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.grid_copies import GridCopies
 from navette.viewer.last_value_cache import STATE_TYPES
 from navette.viewer.outbox import MessageFrame, Outbox
 from navette.viewer.replies import Channel, Level, OfferedService
+
+_MAX_PROBLEMS = 3  # of a request that are reported one by one
 
 
 @dataclass(frozen=True)
@@ -53,7 +58,8 @@ class ProgramCommands(Protocol):
     :class:`~navette.viewer.node.ViewerNode` executes them on the executor's thread.
     After each publisher, publish, parameter and playback command the program calls
     :meth:`Hub.done`; the number of unfinished commands of a client is limited. A
-    service call ends with :meth:`Hub.service_responded` or :meth:`Hub.service_failed`.
+    service call ends with :meth:`OfferedServices.responded` or
+    :meth:`OfferedServices.failed`.
     """
 
     def watch(self, watch: Watch) -> None: ...
@@ -86,6 +92,7 @@ class Session:
 
     id: int
     outbox: Outbox
+    commands: CommandRunner
     channel_by_subscription: dict[int, int] = field(default_factory=dict)
     subscription_by_channel: dict[int, int] = field(default_factory=dict)
     client_channels: dict[int, ClientChannel] = field(default_factory=dict)
@@ -113,6 +120,21 @@ class Session:
 
     def send_status(self, message: str, level: Level = Level.ERROR) -> None:
         self.send(replies.status(level, message))
+
+    def send_problems(
+        self, operation: str, problems: list[str], level: Level = Level.ERROR
+    ) -> None:
+        """Send the problems of a request, a bounded number of them one by one."""
+        for problem in problems[:_MAX_PROBLEMS]:
+            self.send_status(f"{operation}: {problem}", level)
+        more = len(problems) - _MAX_PROBLEMS
+        if more > 0:
+            self.send_status(f"{operation}: {more} more entries are refused", level)
+
+    def add_command(self, command: Callable[..., None], *args: Any) -> None:
+        """Queue a command to the program, which is pending until :meth:`Hub.done`."""
+        self.pending += 1
+        self.commands.add(self.id, partial(command, self.id, *args))
 
     @property
     def wants_node_reports(self) -> bool:

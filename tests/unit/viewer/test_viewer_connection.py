@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 
 import pytest
-from viewer_fakes import FakeClock
+from viewer_fakes import DirectCommands, FakeClock
 from viewer_harness import PATIENCE_S, Client, NonReadingClient, Program, raw_frame
 from websockets.exceptions import ConnectionClosed
 
@@ -79,7 +79,7 @@ def test_silent_connections_do_not_shut_clients_out(program: Program) -> None:
 
 def test_requests_wait_until_the_client_reads_its_responses() -> None:
     async def run() -> None:
-        session = Session(1, Outbox())
+        session = Session(1, Outbox(), DirectCommands())
         peer = Peer(None, session, hub=None, clock=FakeClock())  # type: ignore[arg-type]
         for _ in range(3):
             session.outbox.put_control(bytes(2 * 2**20))
@@ -94,7 +94,7 @@ def test_requests_wait_until_the_client_reads_its_responses() -> None:
 
 def test_requests_wait_while_many_are_unfinished() -> None:
     async def run() -> None:
-        session = Session(1, Outbox())
+        session = Session(1, Outbox(), DirectCommands())
         peer = Peer(None, session, hub=None, clock=FakeClock())  # type: ignore[arg-type]
         session.pending = 16
         waiting = asyncio.create_task(peer.admit(1))

@@ -70,11 +70,11 @@ class Page:
     def __init__(self, *, applies_updates: bool = True) -> None:
         program = RecordingProgram()
         self.hub = Hub(program, DirectCommands(), name="test", session_id="1")
-        self.hub.set_topics([MAP, UPDATES])
+        self.hub.subscriptions.set_topics([MAP, UPDATES])
         self.session: Session = self.hub.join(Outbox(depth=2, data_bytes=300_000))
         if applies_updates:
             self.ask(op="applyGridUpdates")
-        channels = {each.topic: each for each in self.hub.channels}
+        channels = {each.topic: each for each in self.hub.subscriptions.channels}
         self.map = Watch(channels["/map"], self.session.id)
         self.updates = Watch(channels["/map_updates"], None)
         self.subscribe(MAP_ID, self.map.channel.id)
@@ -93,8 +93,10 @@ class Page:
 
     def publish(self, stamp_s: int, *, height: int = EDGE) -> None:
         """Publish an update and the whole grid, as the map memory does."""
-        self.hub.message(self.updates, stamp_s, update(stamp_s))
-        self.hub.message(self.map, stamp_s, payload_of(grid(stamp_s, height=height)))
+        self.hub.subscriptions.message(self.updates, stamp_s, update(stamp_s))
+        self.hub.subscriptions.message(
+            self.map, stamp_s, payload_of(grid(stamp_s, height=height))
+        )
 
     def has_grid(self) -> bool:
         """Take all frames; return whether a whole grid is among them."""
@@ -128,7 +130,7 @@ def test_other_clients_get_every_grid() -> None:
 
 
 def test_a_grid_without_its_update_is_sent(page: Page) -> None:
-    page.hub.message(page.map, 3, payload_of(grid(3)))
+    page.hub.subscriptions.message(page.map, 3, payload_of(grid(3)))
     assert page.has_grid()
     page.publish(4)
     assert not page.has_grid()
@@ -143,15 +145,15 @@ def test_a_grid_of_another_extent_is_sent(page: Page) -> None:
 
 def test_after_a_lost_update_the_next_grid_is_sent(page: Page) -> None:
     for stamp_s in (3, 4, 5):  # more than the outbox keeps of a slow client
-        page.hub.message(page.updates, stamp_s, update(stamp_s))
-    page.hub.message(page.map, 5, payload_of(grid(5)))
+        page.hub.subscriptions.message(page.updates, stamp_s, update(stamp_s))
+    page.hub.subscriptions.message(page.map, 5, payload_of(grid(5)))
     assert page.has_grid()
     page.publish(6)
     assert not page.has_grid()
 
 
 def test_after_a_lost_grid_the_next_one_is_sent(page: Page) -> None:
-    page.hub.message(page.map, 3, payload_of(grid(3)))
+    page.hub.subscriptions.message(page.map, 3, payload_of(grid(3)))
     page.session.outbox.put_data("camera", b"i" * 100_000)  # too much with the grid
     assert page.session.outbox.lost(MAP_ID) == 1
     assert not page.has_grid()

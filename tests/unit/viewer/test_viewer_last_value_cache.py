@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_viewer_hub import Bench
-from viewer_fakes import sent
+from viewer_fakes import Bench, sent
 
 from navette.viewer.playback import PlaybackState, PlaybackStatus
 from navette.viewer.replies import ConnectionGraph, message_head
@@ -20,13 +19,15 @@ PUBLISHED = ConnectionGraph({"/path": ("/planner",)}, {})
 @pytest.fixture
 def bench(tmp_path: Path) -> Bench:
     bench = Bench(tmp_path)
-    bench.hub.set_topics([PATH, SCAN])
+    bench.hub.subscriptions.set_topics([PATH, SCAN])
     bench.hub.set_graph(PUBLISHED)
     return bench
 
 
 def say(bench: Bench, stamp_ns: int, payload: bytes = b"way") -> None:
-    bench.hub.message(Watch(bench.channel("/path"), None), stamp_ns, payload)
+    bench.hub.subscriptions.message(
+        Watch(bench.channel("/path"), None), stamp_ns, payload
+    )
 
 
 def latecomer(bench: Bench) -> list[Any]:
@@ -75,7 +76,7 @@ def test_command_topics_are_not_subscribed(bench: Bench) -> None:
     """The sender of a goal waits for a subscriber, which must be the planner."""
     bench.program.take()
     goal = Topic("/goal_point", "geometry_msgs/msg/PointStamped", "float64 x")
-    bench.hub.set_topics([goal])
+    bench.hub.subscriptions.set_topics([goal])
     bench.hub.set_graph(ConnectionGraph({"/goal_point": ("/missions",)}, {}))
     assert ("watch", "/goal_point", None) not in bench.program.take()
 
@@ -125,13 +126,15 @@ def test_huge_messages_are_not_cached(bench: Bench) -> None:
 
 def test_a_removed_topic_is_unsubscribed(bench: Bench) -> None:
     bench.program.take()
-    bench.hub.set_topics([SCAN])
+    bench.hub.subscriptions.set_topics([SCAN])
     assert bench.program.take() == [("unwatch", "/path", None)]
 
 
 def test_latched_topics_are_not_cached(bench: Bench) -> None:
     bench.program.take()
-    bench.hub.set_topics([Topic("/map", "nav_msgs/msg/OccupancyGrid", "", True)])
+    bench.hub.subscriptions.set_topics(
+        [Topic("/map", "nav_msgs/msg/OccupancyGrid", "", True)]
+    )
     assert ("watch", "/map", None) not in bench.program.take()
 
 

@@ -23,7 +23,7 @@ class Bench(World):
         )
         self.events = self.bridge.soon
         remote = RemoteParameters(
-            self.hub,
+            self.hub.reports,
             bridge=self.bridge,
             graph=self,
             service_calls=self.service_calls,
@@ -31,7 +31,7 @@ class Bench(World):
         )
         remote.set_nodes({"/far": bytes(16)})
         self.monitor = NodeMonitor(
-            self.hub,
+            self.hub.reports,
             bridge=self.bridge,
             graph=self,
             service_calls=self.service_calls,

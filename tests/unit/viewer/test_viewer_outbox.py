@@ -84,3 +84,19 @@ def test_a_long_message_is_sent_in_parts_without_a_copy_of_it() -> None:
     assert outbox.size == len(payload)
     outbox.sent()
     assert outbox.size == 0
+
+
+def test_queued_bytes_are_counted_until_they_are_sent() -> None:
+    outbox = Outbox(data_bytes=100)
+    outbox.put_control("12345")
+    for stream in range(5):
+        outbox.put_data(stream, b"a" * 30)
+    assert outbox.size == 5 + 90
+    outbox.pop()
+    outbox.forget(4)
+    assert outbox.size == 5 + 60
+    outbox.sent()
+    outbox.pop()
+    outbox.pop()
+    outbox.sent()
+    assert outbox.size == 0

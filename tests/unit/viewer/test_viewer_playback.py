@@ -109,15 +109,15 @@ def test_all_clients_receive_changes_and_new_clients_the_last() -> None:
 
 def test_a_seek_drops_queued_messages() -> None:
     hub, _ = hub_of(RANGE)
-    hub.set_topics([Topic("/a", "std_msgs/msg/String", "string data")])
+    hub.subscriptions.set_topics([Topic("/a", "std_msgs/msg/String", "string data")])
     session = hub.join(Outbox())
     pair = {"id": 1, "channelId": 1}
     hub.receive(session, json.dumps({"op": "subscribe", "subscriptions": [pair]}))
     sent(session.outbox)
-    (watch,) = hub._watchers
+    (watch,) = hub.subscriptions._watchers
     state = PlaybackState(PlaybackStatus.PLAYING, 110 * S, 1.0)
     for did_seek, wanted in ((False, 2), (True, 1)):
-        hub.message(watch, 5, b"old")
+        hub.subscriptions.message(watch, 5, b"old")
         hub.set_playback(state, did_seek=did_seek, request_id="")
         assert len(sent(session.outbox)) == wanted
 

@@ -35,7 +35,7 @@ def program() -> RecordingProgram:
 @pytest.fixture
 def hub(program: RecordingProgram) -> Hub:
     hub = Hub(program, DirectCommands(), name="test", session_id="1")
-    hub.set_services([RESET])
+    hub.services.set_services([RESET])
     return hub
 
 
@@ -53,11 +53,11 @@ def test_services_are_advertised_to_clients_that_join_and_to_those_there(
     assert (offer["id"], offer["name"], offer["type"]) == (1, "/reset", RESET.type_name)
     assert offer["response"]["schemaName"] == "std_srvs/srv/Trigger_Response"
     assert offer["responseSchema"] == offer["response"]["schema"] == "bool success"
-    hub.set_services([PAUSE])
+    hub.services.set_services([PAUSE])
     gone, added = sent(first.outbox)
     assert gone == {"op": "unadvertiseServices", "serviceIds": [1]}
     assert [each["id"] for each in added["services"]] == [2]
-    hub.set_services([PAUSE])
+    hub.services.set_services([PAUSE])
     assert not first.outbox
 
 
@@ -68,7 +68,7 @@ def test_a_call_is_forwarded_and_its_response_returned(
     hub.receive(session, call_frame(1, 9, "cdr", b"xyz"))
     call_id = CallId(session.id, 1, 9)
     assert program.take() == [("call", call_id, "/reset", "cdr", b"xyz")]
-    hub.service_responded(call_id, "cdr", b"done")
+    hub.services.responded(call_id, "cdr", b"done")
     (frame,) = sent(session.outbox)
     assert frame == struct.pack("<BIII", 3, 1, 9, 3) + b"cdrdone"
     assert not other.outbox
@@ -102,7 +102,7 @@ def test_calls_without_a_response_are_bounded_per_client(
     assert failures == ["32 calls have no response yet"] * 68 + ["call id 0 is in use"]
     hub.receive(other, call_frame(1, 0, "cdr", b""))
     assert len(program.take()) == 1
-    hub.service_failed(CallId(session.id, 1, 5), "no response in 30 s")
+    hub.services.failed(CallId(session.id, 1, 5), "no response in 30 s")
     (failure,) = sent(session.outbox)
     assert failure["message"] == "no response in 30 s"
     hub.receive(session, call_frame(1, 5, "cdr", b""))
@@ -113,7 +113,7 @@ def test_the_response_to_a_client_that_left_is_dropped(hub: Hub) -> None:
     session = join(hub)
     hub.receive(session, call_frame(1, 1, "cdr", b""))
     hub.leave(session)
-    hub.service_responded(CallId(session.id, 1, 1), "cdr", b"")
+    hub.services.responded(CallId(session.id, 1, 1), "cdr", b"")
     assert not session.outbox
 
 

@@ -1,13 +1,16 @@
-"""A fake of the running program, and a decoder of sent frames."""
+"""A fake of the running program, a hub with clients, and a decoder of sent frames."""
 
 import json
 from collections.abc import Callable, Hashable
+from pathlib import Path
 from typing import Any
 
+from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
+from navette.viewer.hub import Hub
 from navette.viewer.outbox import Outbox
-from navette.viewer.replies import OfferedService
-from navette.viewer.session import CallId, Watch
+from navette.viewer.replies import Channel, OfferedService
+from navette.viewer.session import CallId, Session, Watch
 
 
 class FakeDocuments:
@@ -85,6 +88,54 @@ class DirectCommands:
         is_next: bool = False,
     ) -> None:
         command()
+
+
+class Bench:
+    """A hub with a recording program and clients that send JSON."""
+
+    def __init__(self, folder: Path) -> None:
+        self.program = RecordingProgram()
+        self.hub = Hub(
+            self.program,
+            DirectCommands(),
+            name="test",
+            session_id="1",
+            assets=AssetFolders({"navette": folder}),
+        )
+
+    def join(self) -> Session:
+        session = self.hub.join(Outbox())
+        sent(session.outbox)
+        return session
+
+    def ask(self, session: Session, **document: Any) -> list[Any]:
+        """Send one JSON frame; gives what is sent back."""
+        self.hub.receive(session, json.dumps(document))
+        return sent(session.outbox)
+
+    def subscribe(self, session: Session, subscription: int, channel: int) -> list[Any]:
+        pair = {"id": subscription, "channelId": channel}
+        return self.ask(session, op="subscribe", subscriptions=[pair])
+
+    def advertise(self, session: Session, **fields: Any) -> list[Any]:
+        channel = {
+            "id": 1,
+            "topic": "/goal_point",
+            "encoding": "json",
+            "schemaName": "geometry_msgs/msg/PointStamped",
+            **fields,
+        }
+        return self.ask(session, op="advertise", channels=[channel])
+
+    def stream(self, channel: Channel) -> None:
+        """Publish as often as a stream for two periods."""
+        for _ in range(2):
+            for stamp_ns in range(1, 6):
+                self.hub.subscriptions.message(Watch(channel, None), stamp_ns, b"old")
+            self.hub.subscriptions.end_period()
+
+    def channel(self, topic: str) -> Channel:
+        return next(c for c in self.hub.subscriptions.channels if c.topic == topic)
 
 
 class FakeBridge:
