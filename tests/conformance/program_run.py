@@ -104,7 +104,7 @@ def _read(
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)
         while True:
-            left = deadline - time.perf_counter()  # noqa: TID251
+            left = deadline - time.perf_counter()  # noqa: TID251 - as above
             if left <= 0 or not selector.select(left):
                 return
             read = os.read(process.stdout.fileno(), 65536)

@@ -64,7 +64,8 @@ def test_truncated_bytes(name: str, seed: int, cut: float) -> None:
         decoded = deserialize(data[: int(cut * len(data))], type(message))
     except DecodeError:
         return
-    assert cut == 1.0 and decoded == message  # noqa: PT018
+    assert cut == 1.0
+    assert decoded == message
 
 
 @given(

@@ -1,6 +1,5 @@
 """Every stage reproduces the outputs in its golden bag."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -60,7 +59,10 @@ def test_a_changed_algorithm_is_detected(tmp_path: Path) -> None:
                 super().on_scan(msg)  # type: ignore[arg-type]
 
     stage = STAGES[0]
-    make: Callable[[Context], Node] = lambda context: Blind(context=context)  # noqa: E731
+
+    def make(context: Context) -> Node:
+        return Blind(context=context)
+
     for topic in replay(stage, tmp_path / "out.mcap", make=make).topics:
         assert topic.missing == topic.compared == 50
         assert topic.differing == 0

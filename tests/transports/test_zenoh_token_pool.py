@@ -147,7 +147,7 @@ def test_recreated_publishers_and_clients_work(
         look(client.service_is_ready, "the server")
         publisher.publish(String(data=str(number)))
         future = client.call_async(AddTwoInts.Request(a=number))
-        look(lambda: len(received) == number + 1, "the message")  # noqa: B023
+        look(lambda: len(received) == number + 1, "the message")  # noqa: B023 - called at once
         look(future.done, "the reply")
         assert future.result().sum == number
         here.node.destroy_client(client)
@@ -170,7 +170,7 @@ def test_a_recreated_node_reuses_its_tokens(
         node = Node("again", context=context)
         gids = {service.endpoint.gid for service in node.services}
         names.append(gids)
-        until(lambda: gids <= seen(), "its services")  # noqa: B023
+        until(lambda: gids <= seen(), "its services")  # noqa: B023 - called at once
         node.destroy_node()
         until(lambda: not seen(), "its end")
     assert names[0] == names[1]

@@ -93,5 +93,5 @@ def get_logging_directory() -> Path:
 def new_log_file(name: str) -> Path:
     """Return the path of a new log file, named as ROS 2 does."""
     # The name only, and of any clock: nodes may run in simulated time.
-    stamp_ms = time.time_ns() // 1_000_000  # noqa: TID251
+    stamp_ms = time.time_ns() // 1_000_000  # noqa: TID251 - see above
     return get_logging_directory() / f"{name}_{os.getpid()}_{stamp_ms}.log"

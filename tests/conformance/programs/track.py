@@ -32,7 +32,7 @@ class Track(Node):
         self.say(planner=message.message)
 
     def say(self, **what: object) -> None:
-        print(json.dumps(what), flush=True)  # noqa: T201
+        print(json.dumps(what), flush=True)  # noqa: T201 - read by the test
 
 
 rclpy.init(args=sys.argv)

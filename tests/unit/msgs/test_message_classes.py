@@ -196,4 +196,4 @@ def test_modules_list_their_classes() -> None:
 
     assert "String" in dir(module)
     with pytest.raises(AttributeError, match="no 'Strung'; it has"):
-        module.Strung  # type: ignore[attr-defined]  # noqa: B018
+        module.Strung  # type: ignore[attr-defined]  # noqa: B018 - raises

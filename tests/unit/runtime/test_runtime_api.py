@@ -456,7 +456,7 @@ def test_a_missing_call_of_the_base_class_is_reported() -> None:
         with pytest.raises(AttributeError, match=r"call super\(\).__init__\('name'\)"):
             each()
     with pytest.raises(AttributeError, match=r"'Node' .* no attribute 'publsher'$"):
-        Node("n").publsher  # type: ignore[attr-defined]  # noqa: B018
+        Node("n").publsher  # type: ignore[attr-defined]  # noqa: B018 - raises
     assert not hasattr(Node("n2"), "wings")
 
 

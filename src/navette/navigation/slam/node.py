@@ -235,7 +235,7 @@ class SlamNode(StageNode):
         )
         return self._slam.add(stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor)
 
-    def _base_T_sensor(self, frame_id: str) -> Transform3:  # noqa: N802
+    def _base_T_sensor(self, frame_id: str) -> Transform3:  # noqa: N802 - frame notation
         base = self.params.base_frame
         if frame_id in ("", base):
             return Transform3.identity()

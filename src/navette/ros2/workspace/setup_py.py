@@ -48,7 +48,7 @@ class SetupPy:
             option.arg == "recursive" and getattr(option.value, "value", False)
             for option in options
         )
-        return sorted(glob.glob(pattern, root_dir=self.folder, recursive=recursive))  # noqa: PTH207
+        return sorted(glob.glob(pattern, root_dir=self.folder, recursive=recursive))  # noqa: PTH207 - see above
 
 
 def read_setup_py(path: Path) -> SetupPy | None:

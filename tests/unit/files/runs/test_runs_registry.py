@@ -297,9 +297,9 @@ def test_a_run_that_is_not_published_yet_keeps_its_name_from_other_folders(
     folders = [tmp_path / "a", tmp_path / "b"]
     monkeypatch.setattr(private_run, "existing_folders", lambda: folders)
     for first, second in (("a", "b"), ("b", "a")):
-        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / first)  # noqa: B023
+        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / first)  # noqa: B023 - replaced in each round
         run = PrivateRun.claim("demo")
-        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / second)  # noqa: B023
+        monkeypatch.setattr(private_run, "runtime_folder", lambda n: tmp_path / second)  # noqa: B023 - replaced in each round
         with pytest.raises(InvalidValueError, match="'demo' exists already"):
             PrivateRun.claim("demo", name="demo")
         run.close()

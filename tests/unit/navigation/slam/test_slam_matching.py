@@ -1,7 +1,6 @@
 """Search and refinement of a scan's pose on a map of other scans."""
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -103,7 +102,9 @@ def test_known_offsets_are_recovered_far_below_a_cell(
 
 
 def test_without_noise_the_pose_is_exact() -> None:
-    clean: Callable[[Pose2], Points] = lambda pose: points_at(pose, stddev_m=0.0)  # noqa: E731
+    def clean(pose: Pose2) -> Points:
+        return points_at(pose, stddev_m=0.0)
+
     local = LocalMap(moved_points(clean(HERE), HERE), PARAMS)
     start = Pose2(HERE.x + 0.05, HERE.y - 0.04, HERE.yaw + 0.02)
     found = refine(local.surface, clean(HERE), start, noise_m=0.02)

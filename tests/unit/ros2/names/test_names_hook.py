@@ -336,7 +336,7 @@ class TestInstalledPackages:
 
 
 def test_uninstall_removes_the_names() -> None:
-    import rclpy  # noqa: F401
+    import rclpy  # noqa: F401 - imported to be removed
 
     names.uninstall()
     with pytest.raises(ModuleNotFoundError, match="No module named 'rclpy'"):

@@ -68,7 +68,7 @@ def test_a_subscriber_is_a_subscription(graph: GraphHarness) -> None:
     assert subscriber.topic_name == "/points"
     assert subscriber.qos_profile.depth == 3
     with pytest.raises(AttributeError, match="no_such"):
-        subscriber.no_such  # noqa: B018
+        subscriber.no_such  # noqa: B018 - raises
 
 
 @pytest.fixture

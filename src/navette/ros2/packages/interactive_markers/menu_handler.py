@@ -65,20 +65,20 @@ class MenuHandler:
         siblings.append(handle)
         return handle
 
-    def setVisible(self, handle: int, visible: bool) -> bool:  # noqa: N802
+    def setVisible(self, handle: int, visible: bool) -> bool:  # noqa: N802 - ROS 2's name
         """Show or hide an entry; return whether it exists."""
         return self._set(handle, "is_visible", visible)
 
-    def setCheckState(self, handle: int, check_state: int) -> bool:  # noqa: N802
+    def setCheckState(self, handle: int, check_state: int) -> bool:  # noqa: N802 - ROS 2's name
         """Set the check box of an entry; return whether the entry exists."""
         return self._set(handle, "check_state", check_state)
 
-    def getCheckState(self, handle: int) -> int | None:  # noqa: N802
+    def getCheckState(self, handle: int) -> int | None:  # noqa: N802 - ROS 2's name
         """Return the state of the check box of an entry, or None."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.check_state
 
-    def getTitle(self, handle: int) -> str | None:  # noqa: N802
+    def getTitle(self, handle: int) -> str | None:  # noqa: N802 - ROS 2's name
         """Return the title of an entry, or None."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.title
@@ -98,12 +98,12 @@ class MenuHandler:
         self._marker_names.add(marker_name)
         return True
 
-    def reApply(self, server: InteractiveMarkerServer) -> bool:  # noqa: N802
+    def reApply(self, server: InteractiveMarkerServer) -> bool:  # noqa: N802 - ROS 2's name
         """Show the changed menu at all its markers; return whether they exist."""
         shown = [self.apply(server, name) for name in sorted(self._marker_names)]
         return all(shown)
 
-    def processFeedback(  # noqa: N802
+    def processFeedback(  # noqa: N802 - ROS 2's name
         self, feedback: InteractiveMarkerFeedback
     ) -> None:
         """Call the callback of the selected entry."""

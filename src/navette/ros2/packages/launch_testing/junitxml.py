@@ -29,7 +29,7 @@ def unittestResultsToXml(  # noqa: N802 - ROS 2's name
     return ElementTree(root)
 
 
-def unittestResultToXml(name: str, test_result: Any) -> Element:  # noqa: N802
+def unittestResultToXml(name: str, test_result: Any) -> Element:  # noqa: N802 - ROS 2's name
     """Return the suite of one run."""
     suite = Element(
         "testsuite",
@@ -45,7 +45,7 @@ def unittestResultToXml(name: str, test_result: Any) -> Element:  # noqa: N802
     return suite
 
 
-def unittestCaseToXml(test_result: Any, test_case: Any) -> Element:  # noqa: N802
+def unittestCaseToXml(test_result: Any, test_case: Any) -> Element:  # noqa: N802 - ROS 2's name
     """Return one test case; failures, errors and skips are elements inside."""
     # The parameters of a run follow the method's name: they may contain dots.
     method, _, parameters = test_case.id().partition("[")

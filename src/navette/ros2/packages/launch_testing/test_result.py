@@ -38,11 +38,11 @@ class TestResult(unittest.TextTestResult):
         """Seconds that each case took."""
         return {case: self._times_s.get(case, 0.0) for case in self._starts_s}
 
-    def startTest(self, test: unittest.TestCase) -> None:  # noqa: N802
+    def startTest(self, test: unittest.TestCase) -> None:  # noqa: N802 - unittest's name
         self._starts_s[test] = _now_s()
         super().startTest(test)
 
-    def stopTest(self, test: unittest.TestCase) -> None:  # noqa: N802
+    def stopTest(self, test: unittest.TestCase) -> None:  # noqa: N802 - unittest's name
         self._times_s[test] = _now_s() - self._starts_s[test]
         super().stopTest(test)
 

@@ -20,7 +20,7 @@ class _FormatsByLogger(logging.Handler):
         """Use a formatter for the records of one logger."""
         self._formatters[logger.name] = formatter
 
-    def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802
+    def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS 2's name
         """Use the common formatter for the records of a logger again."""
         self._formatters.pop(logger.name, None)
 

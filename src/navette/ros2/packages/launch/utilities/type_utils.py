@@ -19,7 +19,7 @@ _NUMERIC_TRUTHS = {"1": True, "0": False}
 
 def is_typing_list(data_type: Any) -> bool:
     """Whether a type is a list of a type (``List``, ``List[int]``, ``list[int]``)."""
-    return data_type is List or get_origin(data_type) is list  # noqa: UP006
+    return data_type is List or get_origin(data_type) is list  # noqa: UP006 - see above
 
 
 def is_valid_scalar_type(data_type: Any) -> bool:
