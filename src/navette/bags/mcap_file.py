@@ -339,7 +339,7 @@ def _compressor(kind: str) -> Callable[[bytes], bytes]:
     if kind == "lz4":
         import lz4.frame
 
-        return lz4.frame.compress  # type: ignore[no-any-return]
+        return lz4.frame.compress  # type: ignore[no-any-return] # lz4 has no types
     return bytes
 
 

@@ -240,7 +240,7 @@ class Task(Future[T]):
     def _step(self) -> None:
         if self._coroutine is None:
             args, kwargs = self._arguments
-            result = self._handler(*args, **kwargs)  # type: ignore[operator]
+            result = self._handler(*args, **kwargs)  # type: ignore[operator] # not a coroutine here
             if not isinstance(result, Coroutine):
                 self.set_result(result)
                 return

@@ -105,7 +105,7 @@ def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
                 "each part must only contain letters, digits and underscores and "
                 "must not start with a digit"
             )
-            raise kind(name, reason, position)  # type: ignore[call-arg]
+            raise kind(name, reason, position)  # type: ignore[call-arg] # of its subclasses
         position += len(token) + 1
 
 

@@ -21,5 +21,5 @@ def deserialize_message(serialized_message: bytes, message_type: type[MsgT]) -> 
         DecodeError: the bytes are not such a message.
     """
     check_is_valid_msg_type(message_type)
-    found: MsgT = deserialize(serialized_message, message_type)  # type: ignore[type-var]
+    found: MsgT = deserialize(serialized_message, message_type)  # type: ignore[type-var] # checked above
     return found

@@ -94,7 +94,7 @@ class ChildProcess:
             if _POSIX:  # a fork that does not lead its group yet
                 os.kill(self.pid, number)
             elif number == INTERRUPT:
-                os.kill(self.pid, signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined]
+                os.kill(self.pid, signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined] # Windows only
             elif isinstance(self._process, subprocess.Popen):
                 self._process.terminate()
 

@@ -28,13 +28,13 @@ class _PythonParser(Reader, Scanner, Parser):
 
 _Parser: Any = _PythonParser
 if yaml.__with_libyaml__:
-    from yaml.cyaml import CParser  # type: ignore[attr-defined]
+    from yaml.cyaml import CParser  # type: ignore[attr-defined] # absent from the stubs
 
     _Parser = CParser
 _PLAIN_TAGS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
 
 
-class BoundedLoader(Composer, _Parser, SafeConstructor, Resolver):  # type: ignore[misc]
+class BoundedLoader(Composer, _Parser, SafeConstructor, Resolver):  # type: ignore[misc] # the base is a variable
     """``yaml.SafeLoader`` with a budget; every refusal is a ``yaml.YAMLError``.
 
     Derived classes set other budgets. An alias counts as much as the nodes that it

@@ -50,7 +50,7 @@ class PlanningMap:
         """
         offset = _offset(self.spec, spec)
         if offset is None:
-            self.__init__(cells, spec)  # type: ignore[misc]
+            self.__init__(cells, spec)  # type: ignore[misc] # another extent: starts afresh
             return None
         if cells is not self._received:
             changed = None

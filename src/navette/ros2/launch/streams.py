@@ -29,7 +29,7 @@ class ProgramStream(io.TextIOBase):
         self._outside = outside
 
     @property
-    def encoding(self) -> str:  # type: ignore[override]
+    def encoding(self) -> str:  # type: ignore[override] # a constant here
         return "utf-8"
 
     def writable(self) -> bool:

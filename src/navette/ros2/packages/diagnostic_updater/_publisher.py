@@ -52,7 +52,7 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
         self.stamp = TimeStampStatus(stamp, clock=diag.node.get_clock())
         self.addTask(self.stamp)
 
-    def tick(self, stamp: Time | float) -> None:  # type: ignore[override]
+    def tick(self, stamp: Time | float) -> None:  # type: ignore[override] # ROS 2's signature
         self.stamp.tick(stamp)
         super().tick()
 

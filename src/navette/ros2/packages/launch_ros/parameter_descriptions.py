@@ -110,7 +110,7 @@ class ParameterFile:
         self, param_file: SomeSubstitutionsType | bytes, *, allow_substs: Any = False
     ) -> None:
         is_path = isinstance(param_file, (bytes, os.PathLike))
-        path = os.fsdecode(param_file) if is_path else param_file  # type: ignore[arg-type]
+        path = os.fsdecode(param_file) if is_path else param_file  # type: ignore[arg-type] # by is_path
         self._path = Parts.of(path)
         self._allow_substs = normalize_typed_substitution(allow_substs, bool)
         self._copy: Path | None = None

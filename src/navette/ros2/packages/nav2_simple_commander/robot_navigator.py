@@ -315,7 +315,7 @@ class BasicNavigator(Node):
 
     def getResult(self) -> TaskResult:
         """Return how the last task ended."""
-        return _RESULTS.get(self.status, TaskResult.UNKNOWN)  # type: ignore[arg-type]
+        return _RESULTS.get(self.status, TaskResult.UNKNOWN)  # type: ignore[arg-type] # None is UNKNOWN
 
     def waitUntilNav2Active(
         self, navigator: str = "bt_navigator", localizer: str = "amcl"

@@ -38,7 +38,7 @@ class _Placeholders:
 def _dumper(base: Any) -> Any:
     """Return a YAML dumper class that writes placeholders for arrays."""
 
-    class Dumper(base):  # type: ignore[misc]
+    class Dumper(base):  # type: ignore[misc] # the base is a variable
         def __init__(
             self, *arguments: Any, placeholders: _Placeholders, **options: Any
         ) -> None:

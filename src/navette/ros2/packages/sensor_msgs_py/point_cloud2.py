@@ -107,7 +107,7 @@ def read_points_list(
 ) -> list[Any]:
     """Return the points as named tuples of Python numbers; slow for large clouds."""
     points = read_points(cloud, field_names, skip_nans, uvs)
-    Point = namedtuple("Point", points.dtype.names or (), rename=True)  # type: ignore[misc]
+    Point = namedtuple("Point", points.dtype.names or (), rename=True)  # type: ignore[misc] # names come from a message
     return list(map(Point._make, points.tolist()))
 
 

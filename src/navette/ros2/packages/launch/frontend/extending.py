@@ -145,7 +145,7 @@ class Parser:
 
     def escape_characters(self, value: str) -> str:
         """Return a text without the backslashes that escape characters."""
-        return parse_substitution(value.replace("$(", "\\$(")).perform(None)  # type: ignore[arg-type]
+        return parse_substitution(value.replace("$(", "\\$(")).perform(None)  # type: ignore[arg-type] # text needs no context
 
     @classmethod
     def get_available_extensions(cls) -> list[str]:
