@@ -83,7 +83,6 @@ def router(monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.fixture
 def talker(router: str) -> Iterator[Talker]:
-    pytest.importorskip("zenoh")
     with Context(transport="zenoh") as context:
         yield Talker(context)
 
