@@ -1,6 +1,7 @@
 """Guard: ends child processes if this process ends before them."""
 
 import contextlib
+import logging
 import os
 import subprocess
 import sys
@@ -12,13 +13,17 @@ from navette.supervisor.guard_program import GRACE_S, VARIABLE
 
 # -P: the script's folder is not a place to import from.
 _COMMAND = [sys.executable, "-P", str(Path(__file__).parent / "guard_program.py")]
+# After as many, the helper cannot run here; each start takes a tenth of a second.
+_MOST_HELPERS = 10
+_log = logging.getLogger(__name__)
 
 
 class Guard:
     """Helper process that holds a list of process groups.
 
     A pipe to the helper closes when this process ends, even by SIGKILL; the helper then
-    ends the listed groups. A helper that is killed is replaced. POSIX only.
+    ends the listed groups. A helper that is killed is replaced, up to ten times. POSIX
+    only.
 
     Args:
         hold: file descriptors that the helper keeps open; a lock is then held until
@@ -33,6 +38,7 @@ class Guard:
         self._groups: set[int] = set()
         self._lock = threading.Lock()
         self._closed = False
+        self._started = 0
         self._process = self._start()
 
     @property
@@ -64,6 +70,7 @@ class Guard:
     def _start(self) -> "subprocess.Popen[bytes]":
         # The helper inherits no output: a reader of this process's output must not
         # wait for it. Without tokens: another guard must not take it for a child.
+        self._started += 1
         process = subprocess.Popen(
             [*_COMMAND, self.token, str(self._grace_s)],
             stdin=subprocess.PIPE,
@@ -78,13 +85,21 @@ class Guard:
         return process
 
     def _watch(self, process: "subprocess.Popen[bytes]") -> None:
-        process.wait()
+        code = process.wait()
         with self._lock:
             if self._closed:
                 return
             assert process.stdin is not None, "started with a pipe"
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.close()
+            if self._started == _MOST_HELPERS:
+                _log.error(
+                    "the helper that ends the other processes if this one is killed "
+                    "has ended %d times, last with exit code %d; it is not replaced",
+                    self._started,
+                    code,
+                )
+                return
             self._process = self._start()
             for group in self._groups:
                 self._send(f"+{group}")

@@ -1,17 +1,19 @@
 """Guard: no child outlives a parent that was killed."""
 
+import logging
 import os
 import select
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import navette
-from navette.supervisor.guard import with_token, without_tokens
+from navette.supervisor.guard import Guard, with_token, without_tokens
 from navette.supervisor.guard_program import VARIABLE, end_all
 
 linux = pytest.mark.skipif(
@@ -113,6 +115,32 @@ def test_a_killed_guard_is_replaced(bench: Any) -> None:
     assert guard.pid != first
     _, recorder = bench.start("print('ready')")
     assert recorder.wait_over() == 0
+
+
+def test_a_helper_that_cannot_run_is_reported(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    reported = threading.Event()
+    messages: list[str] = []
+
+    class Reports(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            messages.append(record.getMessage())
+            reported.set()
+
+    command = [sys.executable, "-S", "-E", "-c", "raise SystemExit(3)"]
+    monkeypatch.setattr("navette.supervisor.guard._COMMAND", command)
+    handler = Reports()
+    logging.getLogger("navette.supervisor.guard").addHandler(handler)
+    try:
+        guard = Guard()
+        assert reported.wait(WAIT_S)
+        guard.add(1 << 22)  # no helper reads it
+        guard.close()
+    finally:
+        logging.getLogger("navette.supervisor.guard").removeHandler(handler)
+    assert len(messages) == 1
+    assert "ended 10 times, last with exit code 3" in messages[0]
 
 
 def test_tokens_nest_and_are_removed() -> None:
