@@ -111,25 +111,29 @@ class ZenohSession:
         several tokens arrive at once, and halve while none arrive.
         """
         pause_s = 0.0
-        with contextlib.suppress(zenoh.ZError):
-            while True:
-                first = self._samples.try_recv()
-                if first is None and pause_s > _MIN_PAUSE_S:
-                    pause_s /= 2
-                else:
-                    first = first or self._samples.recv()
-                    samples = self._with_waiting(first)
-                    self.graph.on_tokens(map(_change, samples))
-                    if len(samples) > 1:
-                        pause_s = min(_PAUSE_GROWTH * pause_s, _MAX_PAUSE_S)
-                    pause_s = max(pause_s, _MIN_PAUSE_S)
-                self._closing.wait(pause_s)
+        while True:
+            try:
+                samples = self._waiting(is_blocking=pause_s <= _MIN_PAUSE_S)
+            except zenoh.ZError:  # closed
+                return
+            if samples:
+                self.graph.on_tokens(map(_change, samples))
+                if len(samples) > 1:
+                    pause_s = min(_PAUSE_GROWTH * pause_s, _MAX_PAUSE_S)
+                pause_s = max(pause_s, _MIN_PAUSE_S)
+            else:
+                pause_s /= 2
+            self._closing.wait(pause_s)
 
-    def _with_waiting(self, first: zenoh.Sample) -> list[zenoh.Sample]:
-        """Return a token sample and all that wait in the channel."""
-        samples = [first]
-        while (more := self._samples.try_recv()) is not None:
-            samples.append(more)
+    def _waiting(self, *, is_blocking: bool) -> list[zenoh.Sample]:
+        """Return the token samples in the channel; with ``is_blocking`` one at least.
+
+        Raises:
+            zenoh.ZError: the session is closed.
+        """
+        samples = [self._samples.recv()] if is_blocking else []
+        while (sample := self._samples.try_recv()) is not None:
+            samples.append(sample)
         return samples
 
     def _complete_discovery(self, router: zenoh.Session) -> None:
