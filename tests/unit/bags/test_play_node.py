@@ -231,7 +231,7 @@ def call(graph: GraphHarness, kind: Any, name: str, **fields: Any) -> Any:
     return future.result()
 
 
-def test_services_are_those_of_rosbag2() -> None:
+def test_services_are_those_of_rosbag2(caplog: pytest.LogCaptureFixture) -> None:
     with GraphHarness() as graph:
         probe = graph.collect("/chatter", String)
         ended: list[bool] = []
@@ -249,6 +249,7 @@ def test_services_are_those_of_rosbag2() -> None:
         assert player.player.state is PlayState.PLAYING
         assert call(graph, srv.SetRate, "set_rate", rate=2.0).success
         assert not call(graph, srv.SetRate, "set_rate", rate=-1.0).success
+        assert "rate not changed" in caplog.text
         assert call(graph, srv.GetRate, "get_rate").rate == 2.0
         graph.run_for(0.25)
         assert texts(probe) == ["0", "1", "2"]

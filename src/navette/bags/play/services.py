@@ -1,11 +1,14 @@
 """Services of the player, with rosbag2's names and types (rosbag2_interfaces)."""
 
+import logging
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from navette.bags.play.player import Player, PlayState
 from navette.errors import InvalidValueError
 from navette.msgs.rosbag2_interfaces import srv
+
+_log = logging.getLogger(__name__)
 
 
 class Controls(Protocol):
@@ -36,7 +39,8 @@ def _doing(action: Callable[[Controls], object]) -> Answer:
 def _set_rate(controls: Controls, request: Any, response: Any) -> Any:
     try:
         controls.set_rate(request.rate)
-    except InvalidValueError:
+    except InvalidValueError as error:
+        _log.warning("rate not changed: %s", error)
         response.success = False
     else:
         response.success = True

@@ -1,6 +1,7 @@
 """Plan a path that the footprint can drive, from map, pose and goal."""
 
 import copy
+import logging
 import math
 from dataclasses import replace
 
@@ -40,6 +41,7 @@ _LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
 _EXACT_START_RAD = 0.1
 # A robot as near to its goal stands there.
 _AT_GOAL_M = 0.03
+_log = logging.getLogger(__name__)
 
 
 class Planner:
@@ -148,7 +150,8 @@ class Planner:
         margin = self.params.clearance_margin_m
         try:
             return self._with_margin.plan_on_grid(margin, start, goal, below_m)
-        except MethodFaultError:
+        except MethodFaultError as error:
+            _log.warning("no better path, the present one is kept: %s", error)
             return None
 
     def least_cost(self, start: Pose2, goal: Goal) -> float:

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -334,3 +336,14 @@ def test_a_car_before_a_wall_with_nothing_seen_behind_is_blocked_at_its_start() 
     occupancy[:, :38] = 0
     plan = planner(occupancy, spec, car).plan(Pose2(4.0, 3.0, 0.0), Goal(7.0, 3.0))
     assert plan.outcome.has_path
+
+
+def test_a_fault_in_the_search_for_a_better_path_is_logged(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    mine = tmp_path / "mine.py"
+    mine.write_text("def search(cost, start, goal): raise ValueError('lost')\n")
+    own = planner(*empty_map(8, 8), replace(SMALL, method=str(mine)))
+    assert own.plan_on_grid(Pose2(1.0, 1.0, 0.0), Goal(6.0, 6.0)) is None
+    assert "the present one is kept: planner" in caplog.text
+    assert "lost" in caplog.text
