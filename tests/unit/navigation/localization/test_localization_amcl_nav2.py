@@ -5,12 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from navette.geometry import Pose2
+from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.grids import GridSpec
 from navette.navigation.localization.amcl import AmclParams
 from navette.navigation.localization.amcl.likelihood_field import LikelihoodField
 from navette.navigation.localization.amcl.node import AmclNode
 from navette.navigation.localization.amcl.particle_filter import ParticleFilter
 from navette.runtime import Context, VirtualClock
+from navette.runtime.testing import GraphHarness
 
 #: The section amcl of Nav2's nav2_params.yaml, with other values.
 FILE = """
@@ -106,3 +108,17 @@ def test_beams_at_people_are_skipped_while_enough_of_the_others_agree() -> None:
     far = Pose2(8.0, 1.0, 2.0)  # a wrong pose: nothing agrees, all beams count
     found.set_pose(far, np.diag([1e-4, 1e-4, 1e-4]))
     assert len(found._agreed(points)) == len(points)
+
+
+def test_a_missing_map_is_reported_once() -> None:
+    with GraphHarness() as graph:
+        graph.add(AmclNode(context=graph.context))
+        logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+        scan = LaserScan(angle_increment=0.1, range_max=10.0, ranges=[1.0] * 9)
+        for _ in range(50):
+            graph.publish("/lidar", scan)
+            graph.run_for(0.1)
+        texts = [log.msg for log in logs.messages if "no map" in log.msg]
+        assert len(texts) == 1, texts
+        assert texts[0].startswith("no map has arrived on /static_map")
+        assert "--map FILE.yaml" in texts[0]

@@ -50,6 +50,7 @@ from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
 
 _START = ("x", "y", "z", "yaw")
+_MAP_TIMEOUT_NS = 2_000_000_000
 _LATEST_NS = (2**31 - 1) * 1_000_000_000  # of a message
 _PLACE = ParameterDescriptor(
     description="where the robot starts, if set_initial_pose [m, rad]",
@@ -91,6 +92,7 @@ class AmclNode(StageNode):
         self._localizer: MapLocalizer | None = None
         self._given: tuple[Pose2, NDArray[np.float64]] | None = None
         self._map: OccupancyGrid | None = None
+        self._waits_since_ns: int | None = None
         self._state = LocalizationState.NO_MAP
         self._tracker = self._new_tracker()
         self._attitude = AttitudeTracker()
@@ -134,7 +136,10 @@ class AmclNode(StageNode):
 
     def on_scan(self, msg: LaserScan) -> None:
         """Locate the robot at the stamp of the scan."""
-        if self._localizer is None or not self._lifecycle.is_active:
+        if self._localizer is None:
+            self._report_missing_map()
+            return
+        if not self._lifecycle.is_active:
             return
         stamp_ns = stamp_to_ns(msg.header.stamp)
         odom_T_base = self._tracker.predicted_at(stamp_ns)
@@ -232,6 +237,20 @@ class AmclNode(StageNode):
         if given is not None:
             self._localizer.set_pose(*given)
         self._report(self._localizer.confidence.state)
+
+    def _report_missing_map(self) -> None:
+        """Report once that scans arrive and no map does."""
+        now_ns = self.get_clock().now_ns
+        if self._waits_since_ns is None or now_ns < self._waits_since_ns:
+            self._waits_since_ns = now_ns
+        if now_ns - self._waits_since_ns >= _MAP_TIMEOUT_NS:
+            self.get_logger().warning(
+                f"no map has arrived on {self.params.map_topic}, and the pose is "
+                "unknown without one; navigation waits for it: set map_file of "
+                "map_memory (navette sim --map FILE.yaml, navette up map:=FILE.yaml), "
+                "call map_server/load_map, or start a map server",
+                once=True,
+            )
 
     def _set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
         self._given = pose, covariance
