@@ -27,6 +27,8 @@ SUMMARY_KEYS = {
     "real_time_factor",
     "seed",
     "pose_error_m",
+    "true_goal_distance_m",
+    "goal_tolerance_m",
 }
 
 

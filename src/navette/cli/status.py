@@ -13,8 +13,7 @@ from rich.text import Text
 
 from navette.msgs.topics import CMD_VEL_NAV
 from navette.navigation.stack.options import RunOptions
-from navette.navigation.stack.pose_error import PoseError
-from navette.navigation.stack.summary import RunSummary
+from navette.navigation.stack.summary import PoseError, RunSummary
 from navette.runtime import Stopwatch
 from navette.runtime.stage.commander import Commander
 
@@ -97,6 +96,7 @@ class StatusScreen:
             f"{reached} of {len(self._options.goals)} goals reached"
             if self._options.goals
             else "no goals",
+            _missed(summary),
             f"{summary.contacts} contact{'' if summary.contacts == 1 else 's'}",
             f"minimum clearance {clearance:.2f} m" if clearance is not None else "",
             _pose_error(summary.pose_error_m),
@@ -105,6 +105,7 @@ class StatusScreen:
         ]
         word = "interrupted" if interrupted else "done"
         good = summary.contacts == 0 and reached == len(self._options.goals)
+        good &= summary.missed_m is None
         self._console.print(
             Text.assemble(
                 (f"{word}: ", "bold green" if good else "bold yellow"),
@@ -217,8 +218,20 @@ class StatusScreen:
         return Text.assemble(("━" * done, "green"), ("─" * (width - done), "dim"))
 
 
+def _missed(summary: RunSummary) -> str:
+    """Return the true distance from a goal that only the estimate reached."""
+    if summary.missed_m is None:
+        return ""
+    return (
+        f"by the estimate only (truly up to {summary.missed_m:.2f} m away, "
+        f"tolerance {summary.goal_tolerance_m:g} m)"
+    )
+
+
 def _pose_error(error: PoseError) -> str:
     """Return the error of the estimated pose; empty if it is the true one."""
+    if error.map_fits_world is False:
+        return "pose error unknown (the map is not in the world's frame)"
     if error.final is None:
         return "pose unknown"
     if error.worst is not None and error.worst < _EXACT_M:

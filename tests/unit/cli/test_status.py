@@ -4,6 +4,7 @@ import io
 import math
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -12,8 +13,7 @@ from navette.cli.status import StatusScreen
 from navette.navigation.missions.sequence import GoalOutcome
 from navette.navigation.stack import RunOptions
 from navette.navigation.stack.monitor import RunProgress
-from navette.navigation.stack.pose_error import PoseError
-from navette.navigation.stack.summary import RunSummary
+from navette.navigation.stack.summary import PoseError, RunSummary
 from navette.runtime.stage.commander import Commander
 
 
@@ -117,3 +117,38 @@ def test_goals_without_an_end_are_named_before_the_summary() -> None:
     ]
     assert lines[3].startswith("done: 0 of 3 goals reached")
     assert len(lines) == 4
+
+
+def reported(**values: Any) -> str:
+    """Return the last line of a run with one reached goal."""
+    screen = StatusScreen(RunOptions(goals=((1.0, 2.0),)))
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    given: dict[str, Any] = {
+        "goals": (GoalOutcome((1.0, 2.0), "reached", 3.0, 4.0, 0.1),),
+        "contacts": 0,
+        "min_clearance_m": None,
+        "sim_time_s": 3.0,
+        "wall_time_s": 0.3,
+        "real_time_factor": 10.0,
+        "seed": 0,
+        "pose_error_m": PoseError(0.0, 0.0),
+        **values,
+    }
+    screen.report(RunSummary(**given), interrupted=False)
+    return shown.getvalue().splitlines()[-1]
+
+
+def test_a_goal_that_only_the_estimate_reached_is_marked() -> None:
+    line = reported(true_goal_distance_m=5.512, pose_error_m=PoseError(5.5, 5.51))
+    assert line.startswith(
+        "done: 1 of 1 goals reached, by the estimate only (truly up to 5.51 m away, "
+        "tolerance 0.5 m), 0 contacts, pose error 5.51 m"
+    )
+    assert "estimate" not in reported(true_goal_distance_m=0.3)
+
+
+def test_a_map_in_another_frame_gives_no_pose_error() -> None:
+    line = reported(pose_error_m=PoseError(None, None, map_fits_world=False))
+    assert "pose error unknown (the map is not in the world's frame)" in line
+    assert "pose unknown" in reported(pose_error_m=PoseError(None, None))

@@ -7,9 +7,10 @@ from typing import Any
 
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError, ParameterError
-from navette.msgs.topics import CLOCK
+from navette.msgs.topics import CLOCK, SLAM_MAP, STATIC_MAP
 from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.mapping.zones.node import ZonesNode
+from navette.navigation.planning.params import PlannerParams
 from navette.navigation.stack.localization import localization_nodes
 from navette.navigation.stack.localization_params import localization_parameters
 from navette.navigation.stack.methods import method_parameters
@@ -26,6 +27,7 @@ from navette.runtime import (
     ContextClock,
     Executor,
     LoggingSeverity,
+    Node,
     PacedClock,
     Stopwatch,
     VirtualClock,
@@ -156,8 +158,14 @@ class Simulation:
         )
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
         # Before the missions, so that it reports the last goal before they end the run.
-        self.monitor = MonitorNode(context=context, on_change=on_change)
         self.pose_error = PoseErrorNode(self.sim, context=context)
+
+        def note(progress: RunProgress) -> None:
+            if progress.state == "reached" and progress.goal is not None:
+                self.pose_error.note_reached(progress.goal)
+            on_change(progress)
+
+        self.monitor = MonitorNode(context=context, on_change=note)
         self._add_localization()
         located_by = [name for name, _ in localization_nodes(self.sim.params)]
         self.stack = NavigationStack.create(context, self._replacements, located_by)
@@ -176,6 +184,9 @@ class Simulation:
             else ViewerNode(context=context, listeners=self._reserved.listeners)
         )
         self._check_map()
+        map_topic = self._given_map_topic()
+        if map_topic is not None:
+            self.pose_error.check_map(map_topic)
         self._drop_overrides_of_replaced()
         context.check_overrides()
         self.executor = Executor(context=context)
@@ -185,19 +196,27 @@ class Simulation:
             self.stack.missions.on_done = self.stop
 
     def _check_map(self) -> None:
-        """Check that a run that ends with its goals has the map that amcl needs.
+        """Check that amcl has a map: from a file, or from a node of a shared network.
 
         Raises:
-            ParameterError: no file, and no other node could publish one.
+            ParameterError: the run is private, and no file is given.
         """
-        memory, options = self.stack.map_memory, self.options
-        is_needed = self.sim.params.locator == "amcl" and options.ends_with_goals
-        given = memory.has_parameter("map_file") and memory.get_parameter("map_file")
-        if is_needed and not options.share and given and not given.value:
+        if self.sim.params.locator != "amcl" or self.options.share:
+            return
+        # A map memory of the user's may get its map from anywhere.
+        if _value_of(self.stack.map_memory, "map_file") == "":
             raise ParameterError(
                 f"localization {self.sim.params.localization!r} needs a map; give one "
                 "with --map FILE.yaml (navette slam and navette map save write them)"
             )
+
+    def _given_map_topic(self) -> str | None:
+        """Return the topic of the given map that locates the robot; None: none does."""
+        node = self.stack.localization[-1]
+        if self.sim.params.locator == "amcl":
+            topic = _value_of(node, "map_topic")
+            return STATIC_MAP.name if topic is None else str(topic)
+        return SLAM_MAP.name if _value_of(node, "known_map") else None
 
     def _add_localization(self) -> None:
         """Add the parameters of the localization nodes, below all others."""
@@ -279,6 +298,7 @@ class Simulation:
     def summary(self) -> RunSummary:
         """Return the result so far; goals that have not ended are ``unfinished``."""
         clearance = self.sim.simulator.min_clearance.distance
+        tolerance = _value_of(self.stack.planner, "goal_tolerance_m")
         return RunSummary(
             goals=tuple(self.stack.missions.all_outcomes),
             contacts=self.sim.simulator.contacts.count,
@@ -288,12 +308,23 @@ class Simulation:
             real_time_factor=self.real_time_factor(),
             seed=self.options.seed,
             pose_error_m=self.pose_error.error(),
+            true_goal_distance_m=self.pose_error.goal_distance(),
+            goal_tolerance_m=(
+                PlannerParams().goal_tolerance_m if tolerance is None else tolerance
+            ),
         )
 
     def close(self) -> None:
         """Stop all nodes and threads and close the files; idempotent."""
         self.context.try_shutdown()
         self._reserved.close()
+
+
+def _value_of(node: Node, parameter: str) -> Any:
+    """Return a parameter's value; None: the node, which may be the user's, has none."""
+    if not node.has_parameter(parameter):
+        return None
+    return node.get_parameter(parameter).value
 
 
 def _clock(speed: float) -> ContextClock:

@@ -5,7 +5,26 @@ import math
 from dataclasses import asdict, dataclass
 
 from navette.navigation.missions import GoalOutcome
-from navette.navigation.stack.pose_error import PoseError
+from navette.navigation.planning.params import PlannerParams
+
+
+@dataclass(frozen=True)
+class PoseError:
+    """Distance of the estimated from the true position, m.
+
+    Both positions are in the world's frame. In a run on a map that does not fit the
+    world they are in different frames, and there is no error.
+
+    Attributes:
+        worst: largest so far, while the robot counted as localized; None: it never did.
+        final: at the end; None without an estimate.
+        map_fits_world: whether the map on which the robot locates itself is in the
+            world's frame; None: it does so without a given map, or none came.
+    """
+
+    worst: float | None
+    final: float | None
+    map_fits_world: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -13,7 +32,9 @@ class RunSummary:
     """Summary of a run; ``min_clearance_m`` is from the body to the nearest obstacle.
 
     Seconds are simulated unless named otherwise. Goals are judged by the estimated
-    pose; ``pose_error_m`` is its distance from the true one.
+    pose; ``pose_error_m`` is its distance from the true one. ``true_goal_distance_m``
+    is the largest true distance from a goal when it counted as reached (None: unknown),
+    ``goal_tolerance_m`` the one that counts as reached.
     """
 
     goals: tuple[GoalOutcome, ...]
@@ -24,11 +45,19 @@ class RunSummary:
     real_time_factor: float
     seed: int
     pose_error_m: PoseError
+    true_goal_distance_m: float | None = None
+    goal_tolerance_m: float = PlannerParams().goal_tolerance_m
 
     @property
     def succeeded(self) -> bool:
         """Whether all goals were reached without contact."""
         return self.contacts == 0 and all(g.result == "reached" for g in self.goals)
+
+    @property
+    def missed_m(self) -> float | None:
+        """Distance from a goal that only the estimate reached; None without one."""
+        off = self.true_goal_distance_m
+        return None if off is None or off <= self.goal_tolerance_m else off
 
     def to_json(self) -> str:
         """Return one JSON object; numbers to four places, NaN and infinity as null."""
