@@ -230,6 +230,20 @@ def test_verbs_ask_which_of_two_runs_and_reach_the_named_one(two: TwoRuns) -> No
     assert (outside.returncode, outside.stdout) == (0, "")
 
 
+def test_stop_asks_which_of_two_runs_and_all_stops_both(two: TwoRuns) -> None:
+    refused = two.terminals.type("stop")
+    assert refused.returncode == 1
+    assert "to stop every robot: navette stop --all" in refused.stderr
+    for words, state in (
+        (("stop", "--all"), "stopped until: navette stop --all --release"),
+        (("stop", "--all", "--release"), "released"),
+    ):
+        done = two.terminals.type(*words)
+        assert done.returncode == 0, done.stderr
+        lines = sorted(f"{run.name}/robot: {state}" for run in two.runs)
+        assert sorted(done.stdout.splitlines()) == lines
+
+
 def test_the_doctor_finds_nothing_wrong_with_a_run(terminals: Terminals) -> None:
     terminals.start("sim", "empty", "--port", "0")
     registered(1)

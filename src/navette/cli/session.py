@@ -44,7 +44,10 @@ FAILED = 1
 
 @contextmanager
 def connect(
-    context: "Context | None" = None, *, node_name: str | None = None
+    context: "Context | None" = None,
+    *,
+    node_name: str | None = None,
+    run: str | None = None,
 ) -> "Iterator[Node]":
     """Yield a node connected to the network; its callbacks run in :func:`wait_for`.
 
@@ -54,6 +57,7 @@ def connect(
     Args:
         context: context to use instead of a new one; it is not shut down.
         node_name: default: the hidden name ``_navette_<pid>``.
+        run: the network to join, as ``NAVETTE_RUN`` names it, which is the default.
     """
     from navette.runtime import Executor, Node
 
@@ -61,7 +65,8 @@ def connect(
         if context is None:
             # Connecting and disconnecting need no cleanup on a signal.
             cleanup.enter_context(default_signal_action())
-            context = _network_context()
+            with _named(run):
+                context = _network_context()
             cleanup.callback(context.try_shutdown)
         node = Node(
             node_name or f"_navette_{os.getpid()}",
@@ -82,6 +87,13 @@ def connect(
             if isinstance(error.__cause__, Exception):
                 raise error.__cause__ from None
             raise
+
+
+def networks() -> list[str | None]:
+    """Return all networks of this user's robots, as ``run`` of :func:`connect`."""
+    from navette.files.runs import every_network
+
+    return [None] if _has_transport() else [*every_network()]
 
 
 def wait_for(
@@ -152,14 +164,37 @@ def fail(message: str) -> Never:
     raise click.exceptions.Exit(FAILED)
 
 
+@contextmanager
+def _named(run: str | None) -> Iterator[None]:
+    """Inside, the environment names the run as ``--run`` does."""
+    from navette.files.runs import VARIABLE
+
+    before = os.environ.get(VARIABLE)
+    if run is not None:
+        os.environ[VARIABLE] = run
+    try:
+        yield
+    finally:
+        if run is not None and before is None:
+            del os.environ[VARIABLE]
+        elif before is not None:
+            os.environ[VARIABLE] = before
+
+
+def _has_transport() -> bool:
+    """Whether something else than a run determines how programs communicate."""
+    from navette.runtime.context import current_scope
+
+    return "NAVETTE_TRANSPORT" in os.environ or current_scope.get().graph is not None
+
+
 def _network_context() -> "Context":
     """Return a new context that logs only warnings and errors."""
     from navette.errors import NetworkError
     from navette.runtime import Context, LoggingSeverity, SystemClock
-    from navette.runtime.context import current_scope
 
-    is_set = "NAVETTE_TRANSPORT" in os.environ or current_scope.get().graph is not None
-    context = Context(clock=SystemClock(), transport=None if is_set else "zenoh")
+    transport = None if _has_transport() else "zenoh"
+    context = Context(clock=SystemClock(), transport=transport)
     try:
         context.init(args=[], console_level=LoggingSeverity.WARN)
     except NetworkError as error:

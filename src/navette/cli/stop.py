@@ -1,11 +1,15 @@
 """``navette stop``: engage and release the emergency stop of every robot."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Annotated, Any
+
+import click
 
 from navette.cli.options import Option
 from navette.cli.output import show
-from navette.cli.session import connect, endpoints, fail, wait_for
+from navette.cli.session import FAILED, connect, endpoints, fail, networks, wait_for
+from navette.cli.stderr import print_error
 from navette.msgs import topics
 
 if TYPE_CHECKING:
@@ -20,6 +24,13 @@ def stop(
         bool,
         Option("--release", help="Release the stop: the robot follows commands again."),
     ] = False,
+    every: Annotated[
+        bool,
+        Option(
+            "--all",
+            help="Every robot of this user: of all runs and of the shared network.",
+        ),
+    ] = False,
 ) -> None:
     """Stop the robot at once; it stays stopped until --release.
 
@@ -27,39 +38,77 @@ def stop(
     publish /cmd_vel. The goal continues after the release, or ends if the arbiter's
     parameter after_stop is "end".
     """
-    from navette.msgs.std_msgs.msg import Bool, Empty
-
-    message: Any = Empty() if release else Bool(data=True)
-    wanted = topics.EMERGENCY_STOP_RELEASE if release else topics.EMERGENCY_STOP
-    with connect() as node:
-        prefixes = _robots(node)
-        if not prefixes:
+    requests: list[_Request] = []
+    is_complete = True
+    with ExitStack() as cleanup:
+        for run in networks() if every else [None]:
+            try:
+                node = cleanup.enter_context(connect(run=run))
+            except click.exceptions.Exit:  # reported; the other robots are stopped
+                if not every:
+                    raise
+                is_complete = False
+                continue
+            requests.append(_Request(node, run, stopped=not release))
+        if not any(each.prefixes for each in requests):
             fail(
                 f"no node subscribes to {topics.EMERGENCY_STOP.name}: start an "
                 "arbiter with navette run navette arbiter, or check navette doctor"
             )
-        confirmed = _Confirmations(node, prefixes)
-        publishers = {
-            prefix: node.create_publisher(type(message), prefix + wanted.name, 1)
-            for prefix in prefixes
+        confirmations = [each.is_confirmed() for each in requests]
+    if not (is_complete and all(confirmations)):
+        raise click.exceptions.Exit(FAILED)
+
+
+class _Request:
+    """A request to all robots of one network, repeated until it is confirmed.
+
+    Args:
+        node: in that network; the request is published at once.
+        run: name of the network, if it is one of several.
+        stopped: engage or release the stop.
+    """
+
+    def __init__(self, node: "Node", run: str | None, *, stopped: bool) -> None:
+        from navette.msgs.std_msgs.msg import Bool, Empty
+
+        self.prefixes = _robots(node)
+        self._node, self._stopped = node, stopped
+        self._run = "" if run is None else f"{run}/"
+        self._message: Any = Bool(data=True) if stopped else Empty()
+        topic = topics.EMERGENCY_STOP if stopped else topics.EMERGENCY_STOP_RELEASE
+        self._publishers = {
+            prefix: node.create_publisher(type(self._message), prefix + topic.name, 1)
+            for prefix in self.prefixes
         }
+        self._confirmed = _Confirmations(node, self.prefixes)
+        self._send()
+        node.create_timer(_REPEAT_S, self._send)
 
-        def send() -> None:
-            for prefix in confirmed.waiting(stopped=not release):
-                publishers[prefix].publish(message)
-
-        send()
-        node.create_timer(_REPEAT_S, send)
-        wait_for(node, lambda: not confirmed.waiting(stopped=not release), _CONFIRM_S)
-        missing = confirmed.waiting(stopped=not release)
-        what = "released" if release else "stopped until: navette stop --release"
-        for prefix in prefixes:
+    def is_confirmed(self) -> bool:
+        """Wait for the robots, print a line for each, and return whether all did it."""
+        wait_for(self._node, lambda: not self._waiting(), _CONFIRM_S)
+        missing = self._waiting()
+        end = "navette stop --all --release" if self._run else "navette stop --release"
+        what = f"stopped until: {end}" if self._stopped else "released"
+        for prefix in self.prefixes:
             if prefix not in missing:
-                show(f"{prefix.lstrip('/') or 'robot'}: {what}")
+                show(f"{self._run}{prefix.lstrip('/') or 'robot'}: {what}")
         if missing:
-            state = "released" if release else "engaged"
+            state = "engaged" if self._stopped else "released"
             names = ", ".join(p + topics.COMMANDER.name for p in missing)
-            fail(f"the emergency stop is not {state} according to {names}")
+            where = f" of {self._run.rstrip('/')}" if self._run else ""
+            print_error(
+                f"the emergency stop is not {state} according to {names}{where}"
+            )
+        return not missing
+
+    def _waiting(self) -> list[str]:
+        return self._confirmed.waiting(stopped=self._stopped)
+
+    def _send(self) -> None:
+        for prefix in self._waiting():
+            self._publishers[prefix].publish(self._message)
 
 
 def _robots(node: "Node") -> list[str]:

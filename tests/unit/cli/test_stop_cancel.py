@@ -67,6 +67,13 @@ def test_every_robot_is_stopped(here: World) -> None:
     ]
 
 
+def test_all_is_the_only_network_where_no_run_chooses_it(here: World) -> None:
+    here.graph.add(ArbiterNode(context=here.context))
+    assert (
+        here.read("stop", "--all") == "robot: stopped until: navette stop --release\n"
+    )
+
+
 def test_stop_without_a_robot_fails(here: World) -> None:
     done = here.run("stop")
     assert done.code == 1

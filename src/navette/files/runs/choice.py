@@ -73,6 +73,11 @@ def chosen_run(
     return found[0] if found else None
 
 
+def every_network() -> list[str]:
+    """Return what ``NAVETTE_RUN`` names: each run, and the shared network."""
+    return [*(run.name for run in live_runs()), SHARED]
+
+
 def stay_shared() -> None:
     """Keep this program and its children out of runs that are not named.
 
@@ -107,6 +112,7 @@ def _question(runs: Sequence[RunInfo]) -> str:
         lines.append(f"  {'  '.join(words)}".rstrip())
     choice = f"export {VARIABLE}={runs[0].name}"
     lines += ["", f"or for all programs of this terminal: {choice}"]
+    lines.append("to stop every robot: navette stop --all")
     return "\n".join(lines)
 
 

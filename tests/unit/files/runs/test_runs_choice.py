@@ -7,7 +7,14 @@ import pytest
 
 from navette import __version__
 from navette.errors import InvalidValueError, NetworkError
-from navette.files.runs import PrivateRun, chosen_run, pin_run, shares, stay_shared
+from navette.files.runs import (
+    PrivateRun,
+    chosen_run,
+    every_network,
+    pin_run,
+    shares,
+    stay_shared,
+)
 
 
 def test_the_only_run_is_joined_with_nothing_prepared(demo: PrivateRun) -> None:
@@ -65,7 +72,9 @@ def test_of_several_runs_one_must_be_named(demo: PrivateRun) -> None:
         f"  sim   navette sim   course                         pid {pid}",
         "",
         "or for all programs of this terminal: export NAVETTE_RUN=demo",
+        "to stop every robot: navette stop --all",
     ]
+    assert every_network() == ["demo", "sim", "shared"]
     found = chosen_run({"NAVETTE_RUN": "sim"})
     assert found is not None
     assert found.name == "sim"
