@@ -48,12 +48,13 @@ describe("measuring", () => {
 describe("the goal", () => {
   const sent: Goal[] = [];
   let goal: Goal | null;
+  let isStopped = false;
   const tool = new GoalTool({
     scene: {
       fixedFrame: "odom",
       connection: { playback: null },
       transforms: { lookUp: () => ({ translation: [10, 0, 0], rotation: fromYaw(0) }) },
-      robot: { isSubscribed: () => true, get goal() { return goal; } },
+      robot: { isSubscribed: () => true, get goal() { return goal; }, get isStopped() { return isStopped; } },
       displays: { goal: { isVisible: true } },
       viewing: { viewpoint: { scale: 50 } },
       invalidate: () => undefined,
@@ -75,6 +76,13 @@ describe("the goal", () => {
     tool.endDrag([13, 4]);
     expect(sent).toEqual([{ frame: "odom", x: 13, y: 4, yaw: expect.closeTo(1.5) as number }]);
     expect(tool.overlay()).toEqual([]);
+  });
+
+  it("is not driven to while the robot is stopped", () => {
+    expect(tool.hint).toContain("send the robot there");
+    isStopped = true;
+    expect(tool.hint).toBe("Click to set the goal; drag the goal to move it.");
+    isStopped = false;
   });
 
   it("leaves drags elsewhere to the view", () => {

@@ -14,10 +14,14 @@ export class GoalTool extends Tool {
   readonly id = "goal";
   readonly title = "Goal";
   readonly icon = "goal";
-  readonly hint = "Click to send the robot there; drag the goal to move it.";
   readonly key = "g";
   /** Where the goal is dragged to. */
   #moved: Goal | null = null;
+
+  get hint(): string {
+    const click = this.context.scene.robot.isStopped ? "Click to set the goal" : "Click to send the robot there";
+    return `${click}; drag the goal to move it.`;
+  }
 
   override get obstacle(): string {
     return this.needs(GOAL_POINT);

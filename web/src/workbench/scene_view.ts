@@ -163,7 +163,8 @@ export class SceneView {
     this.#drawView();
     const drives = robot.driveTopic !== undefined;
     const { chosen } = tools;
-    const help = [chosen.obstacle || chosen.hint, drives ? "Arrow keys drive, Space stops." : ""].filter(Boolean).join(" ");
+    const keys = robot.isStopped ? "The stop holds the robot until you release it." : drives ? "Arrow keys drive, Space stops." : "";
+    const help = [chosen.obstacle || chosen.hint, keys].filter(Boolean).join(" ");
     setText(this.#help, help);
     scene.canvas.ariaLabel = `Map. ${help}`;
     for (const tool of tools.all) {
