@@ -9,6 +9,7 @@ from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.service_calls import ServiceRequest, call_all
 from navette.cli.session import connect, fail, service_endpoints
+from navette.errors import FileFormatError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -127,7 +128,7 @@ def convert(
     stem = to.with_suffix("") if to.suffix == ".yaml" else to
     target = stem.with_name(f"{stem.name}.yaml")
     if target.exists() and not overwrite:
-        fail(f"{target}: exists already; --overwrite replaces it")
+        raise FileFormatError(target, "exists already; --overwrite replaces it")
     occupancy = read_occupancy_map(file)
     try:
         written = write_occupancy_map(

@@ -11,6 +11,7 @@ from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import fail
 from navette.cli.stderr import note
+from navette.errors import FileFormatError, InvalidValueError
 
 if TYPE_CHECKING:
     from navette.geometry import Pose2
@@ -173,7 +174,7 @@ def _slam(options: SlamOptions, params: "SlamParams") -> "Slam":
     if source.known is None:
         if source.localize or source.start:
             option = "--localize" if source.localize else "--start"
-            fail(f"{option} needs a known map: --continue FILE.slam")
+            raise InvalidValueError(f"{option} needs a known map: --continue FILE.slam")
         return Slam(params)
     graph = read_graph(source.known, params)
     start = None
@@ -181,7 +182,9 @@ def _slam(options: SlamOptions, params: "SlamParams") -> "Slam":
         try:
             x, y, degrees = map(float, source.start.split())
         except ValueError:
-            fail(f"--start {source.start!r}: expected X Y YAW_DEG, such as '1.5 2 90'")
+            raise InvalidValueError(
+                f"--start {source.start!r}: expected X Y YAW_DEG, such as '1.5 2 90'"
+            ) from None
         start = Pose2(x, y, math.radians(degrees))
     return Slam(params, start, graph=graph, is_mapping=not source.localize)
 
@@ -190,16 +193,18 @@ def _check_files(options: SlamOptions) -> None:
     output = options.output
     files = [output.trajectory, _map_file(output.map_file), output.save]
     if not any(files):
-        fail(
+        raise InvalidValueError(
             "nothing to write; give --map OUT, --trajectory OUT.tum or --save OUT.slam"
         )
     for each in files:
         if each is None:
             continue
         if each.exists() and not output.overwrite:
-            fail(f"{each}: exists already; --overwrite replaces it")
+            raise FileFormatError(each, "exists already; --overwrite replaces it")
         if not each.parent.is_dir():
-            fail(f"{each}: the folder {each.parent} does not exist; create it first")
+            raise InvalidValueError(
+                f"{each}: the folder {each.parent} does not exist; create it first"
+            )
 
 
 def _map_file(given: Path | None) -> Path | None:

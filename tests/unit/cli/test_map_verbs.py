@@ -107,7 +107,7 @@ def test_a_file_is_converted(here: World, file: Path, tmp_path: Path) -> None:
     assert read_description(written).mode == "scale"
     np.testing.assert_array_equal(read_occupancy_map(written).cells, CELLS)
     again = here.run("map", "convert", str(file), str(to))
-    assert (again.code, "--overwrite replaces it" in again.err) == (1, True)
+    assert (again.code, "--overwrite replaces it" in again.err) == (2, True)
     here.read("map", "convert", str(file), str(to), "--overwrite", "--image", "png")
     assert read_description(written).mode == "trinary"
 

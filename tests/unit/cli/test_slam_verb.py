@@ -144,3 +144,17 @@ def test_a_damaged_map_is_refused(bag: Path, tmp_path: Path) -> None:
     assert "--localize needs a known map" in failed.err
     failed = run(bag, "--continue", tmp_path / "none.slam", "--trajectory", lines)
     assert "cannot be opened" in failed.err
+
+
+def test_wrong_options_are_usage_errors(bag: Path, tmp_path: Path) -> None:
+    """As for `navette sim`: exit code 2."""
+    old = tmp_path / "old.yaml"
+    old.touch()
+    for words, text in (
+        (("--map", old), "old.yaml: exists already; --overwrite replaces it"),
+        ((), "nothing to write"),
+        (("--map", tmp_path / "none" / "x"), "does not exist"),
+    ):
+        failed = run(bag, *words)
+        assert failed.code == 2
+        assert text in failed.err
