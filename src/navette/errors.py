@@ -111,6 +111,14 @@ class LockStepError(NavetteError):
 class MissingPartError(NavetteError, ImportError):
     """An optional package is not installed; the message names the command."""
 
+    @classmethod
+    def of(cls, use: str, package: str, extra: str) -> "MissingPartError":
+        """Return the error of a use that needs a package, which an extra installs."""
+        return cls(
+            f"{use} requires {package}: pip install {package} (with Navette from its "
+            f"source: pip install '.[{extra}]')"
+        )
+
 
 class CallbackError(NavetteError, RuntimeError):
     """A callback raised; the original exception is ``original`` and ``__cause__``.

@@ -20,10 +20,7 @@ try:
     from cryptography.hazmat.primitives.asymmetric import ec
     from cryptography.x509.oid import ExtendedKeyUsageOID as Usage
 except ImportError as error:
-    raise MissingPartError(
-        "creating keys requires the package cryptography: "
-        "pip install 'navette[security]'"
-    ) from error
+    raise MissingPartError.of("creating keys", "cryptography", "security") from error
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 

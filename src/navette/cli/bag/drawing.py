@@ -54,9 +54,7 @@ def draw(series: Sequence[Series], title: str, path: Path) -> None:
         from matplotlib import rc_context
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise MissingPartError(
-            "plotting needs the package matplotlib: pip install 'navette[plot]'"
-        ) from error
+        raise MissingPartError.of("plotting", "matplotlib", "plot") from error
     with rc_context(_STYLE):
         figure = Figure(layout="constrained", dpi=144)
         paint = _paint_plane if series[0].selected.x else _paint_panels

@@ -32,7 +32,7 @@ Picture = Annotated[
 def plot(bag: Bag, fields: Fields, output: Picture = None) -> None:
     r"""Plot fields of a recording over time or over another field.
 
-    Needs matplotlib: pip install 'navette\[plot]'.
+    Needs matplotlib: pip install matplotlib.
     """
     from navette.bags import open_bag
     from navette.cli.bag.drawing import draw

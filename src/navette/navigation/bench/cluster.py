@@ -31,9 +31,7 @@ def run_on_cluster(
     try:
         from distributed import Client, as_completed
     except ImportError:
-        raise MissingPartError(
-            "--dask requires Dask: pip install 'navette[cluster]'"
-        ) from None
+        raise MissingPartError.of("--dask", "distributed", "cluster") from None
     try:
         client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:

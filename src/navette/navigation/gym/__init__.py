@@ -17,9 +17,7 @@ from navette.errors import MissingPartError
 try:
     import gymnasium
 except ImportError:
-    raise MissingPartError(
-        "navette.navigation.gym requires Gymnasium: pip install 'navette[gym]'"
-    ) from None
+    raise MissingPartError.of("navette.navigation.gym", "gymnasium", "gym") from None
 
 from navette.navigation.gym.environment import NavigationEnv
 from navette.navigation.gym.observation import Observer

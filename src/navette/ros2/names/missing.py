@@ -15,7 +15,7 @@ _ROS_2 = {
     "ros2node": "navette's commands do the same: navette node --help",
     "ros2param": "navette's commands do the same: navette param --help",
     "ros2service": "navette's commands do the same: navette service --help",
-    "xacro": "pip install xacro, or navette[xacro]",
+    "xacro": "pip install xacro",
 }
 
 
