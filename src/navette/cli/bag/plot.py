@@ -30,7 +30,7 @@ Picture = Annotated[
 
 
 def plot(bag: Bag, fields: Fields, output: Picture = None) -> None:
-    r"""Plot fields of a recording over time or over another field.
+    """Plot fields of a recording over time or over another field.
 
     Needs matplotlib: pip install matplotlib.
     """
