@@ -163,7 +163,7 @@ export class SceneView {
     this.#drawView();
     const drives = robot.driveTopic !== undefined;
     const { chosen } = tools;
-    const keys = robot.isStopped ? "The stop holds the robot until you release it." : drives ? "Arrow keys drive, Space stops." : "";
+    const keys = robot.isStopped ? "Release the stop to drive." : drives ? "Arrow keys drive, Space stops." : "";
     const help = [chosen.obstacle || chosen.hint, keys].filter(Boolean).join(" ");
     setText(this.#help, help);
     scene.canvas.ariaLabel = `Map. ${help}`;
