@@ -64,7 +64,7 @@ try {
   await page.keyboard.press("Space");
   await shows("Emergency stop");
   seen.stopped = await page.textContent("#headline");
-  seen.hint = await page.textContent("#help");
+  await until(() => document.querySelector("#help").textContent.endsWith("Release the stop to drive."));
   await page.keyboard.press("ArrowUp");
   await pause(700);
   seen.answer = await page.textContent("#answer");
