@@ -230,7 +230,7 @@ def test_verbs_ask_which_of_two_runs_and_reach_the_named_one(two: TwoRuns) -> No
     assert (outside.returncode, outside.stdout) == (0, "")
 
 
-def test_stop_asks_which_of_two_runs_and_all_stops_both(two: TwoRuns) -> None:
+def test_stop_is_refused_for_two_runs_and_all_stops_both(two: TwoRuns) -> None:
     refused = two.terminals.type("stop")
     assert refused.returncode == 1
     assert "to stop every robot: navette stop --all" in refused.stderr
