@@ -30,7 +30,8 @@ _STYLE: Any = {
     "xtick.major.size": 0,
     "ytick.major.size": 0,
     "lines.linewidth": 1.4,
-    "axes.formatter.useoffset": False,
+    "axes.formatter.useoffset": False,  # UTM coordinates in full
+    "axes.formatter.limits": (-4, 9),
     "legend.frameon": False,
     "svg.hashsalt": "navette",  # makes the file reproducible
 }
