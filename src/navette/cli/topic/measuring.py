@@ -11,9 +11,9 @@ from navette.cli.nearest import did_you_mean
 from navette.cli.output import (
     aligned,
     cut_to_width,
-    is_terminal,
     json_text,
     show,
+    show_over,
     styled,
 )
 from navette.cli.session import endpoints, fail, is_hidden, wait_for
@@ -164,10 +164,8 @@ class Report:
         first, *lines = map(cut_to_width, aligned([("topic", *head), *rows], gap=3))
         width = max(map(len, (first, *lines)))
         text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
-        if is_terminal() and self._lines_above:
-            text = f"\x1b[{self._lines_above}F\x1b[J{text}"
+        show_over(text, rows=self._lines_above)
         self._lines_above = len(lines) + 3
-        show(text)
 
 
 def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> None:
