@@ -14,7 +14,11 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 @dataclass(frozen=True)
 class RunProgress:
-    """Progress of a run. Metres and simulated seconds."""
+    """Progress of a run. Metres and simulated seconds.
+
+    Attributes:
+        distance_left_m: None before the first plan to the goal.
+    """
 
     goal: tuple[float, float] | None = None
     goal_id: str = ""
@@ -50,7 +54,8 @@ class MonitorNode(Node):
         values = {item.key: item.value for item in status.values}
         before = self.progress
         goal = _number(values, "goal_x"), _number(values, "goal_y")
-        left = _number(values, "distance_left_m")
+        has_plan = values.get("plan") != ""  # a planner of one's own may not report it
+        left = _number(values, "distance_left_m") if has_plan else math.nan
         self.progress = replace(
             before,
             goal=None if math.isnan(goal[0]) else goal,
