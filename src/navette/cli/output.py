@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from navette.cli.session import fail
+from navette.cli.stderr import filled
 from navette.files.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
 
 # Overwriting line by line does not flicker, unlike clearing the screen first.
@@ -47,6 +48,13 @@ def wrapped(text: str, indent: int) -> list[str]:
     return textwrap.wrap(
         text, max(width, 20), break_long_words=False, break_on_hyphens=False
     )
+
+
+def hanging(lines: str, indent: int) -> str:
+    """Wrap each line at spaces, with an indent; unchanged in a pipe."""
+    if not is_terminal():
+        return lines
+    return "\n".join(filled(line, indent) for line in lines.split("\n"))
 
 
 def harmless(text: str) -> str:
