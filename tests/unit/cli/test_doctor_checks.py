@@ -356,6 +356,8 @@ def test_the_motion_of_the_robot() -> None:
 
 
 HERE = "tcp/127.0.0.1:7447"
+
+
 def test_a_command_line_is_quoted_for_a_shell() -> None:
     words = ("python", "-u", "/bin/navette", "sim", "--robot", "", "--sensor=")
     assert Process(1, 0, words).command == "navette sim --robot '' --sensor="

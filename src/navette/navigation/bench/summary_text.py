@@ -36,7 +36,9 @@ def summary_text(summary: Summary, name: str) -> str:
         + f" of real time; a run ×{_known(summary.real_time_factor, 1)}",
     }
     title = f"{name}\n" if name else ""
-    return title + "\n".join(f"{label:<{LABEL_COLUMNS}}{text}" for label, text in lines.items())
+    return title + "\n".join(
+        f"{label:<{LABEL_COLUMNS}}{text}" for label, text in lines.items()
+    )
 
 
 def comparison_text(against: Sequence[MeasureDifference]) -> str:
