@@ -189,7 +189,8 @@ class StatusScreen:
             return Text(f"✗ {where} {progress.state}", style="yellow")
         if progress.goal_id not in self._longest_m:
             self._longest_m[progress.goal_id] = 0.0
-            return Text(f"→ {where}")
+            again = f", retry {progress.retry}" if progress.retry else ""
+            return Text(f"→ {where}{again}")
         return None
 
     def _line(self, simulation: "Simulation") -> RenderableType:

@@ -172,3 +172,25 @@ def test_a_line_breaks_between_its_parts() -> None:
     assert in_rows(parts, 80).plain == "0.50 m/s   → /cmd_vel_teleop   EMERGENCY STOP"
     assert in_rows(parts, 30).plain == "0.50 m/s   → /cmd_vel_teleop\nEMERGENCY STOP"
     assert in_rows(parts, 10).plain.count("\n") == 2
+
+
+def test_a_retry_is_no_other_goal() -> None:
+    screen = StatusScreen(RunOptions())
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    goal = RunProgress(goal=(1.0, 2.0), goal_id="1", state="planning")
+    again = replace(goal, goal_id="2", retry=1)
+    for progress in (
+        goal,
+        replace(goal, state="stuck", failed=True),
+        again,
+        replace(again, state="stuck", failed=True),
+    ):
+        screen.on_change(progress)
+    lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
+    assert lines == [
+        "→ goal (1.0, 2.0)",
+        "✗ goal (1.0, 2.0) stuck",
+        "→ goal (1.0, 2.0), retry 1",
+        "✗ goal (1.0, 2.0) stuck",
+    ]

@@ -41,7 +41,7 @@ class NavigatorStatus:
 
     def _log(self, report: NavigatorReport) -> None:
         logger = self._logger
-        goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
+        goal = goal_text(report)
         if report.fault and report.fault != self._fault:
             self._fault = report.fault
             logger.error(f"{goal}: {report.message}: {report.fault}")
@@ -54,6 +54,13 @@ class NavigatorStatus:
             logger.info(
                 f"{goal}: {report.message}" if report.goal_id else "no goal yet"
             )
+
+
+def goal_text(report: NavigatorReport) -> str:
+    """Return the goal with the number of its first attempt."""
+    first = report.goal_id - report.retry
+    again = f", retry {report.retry}" if report.retry else ""
+    return f"goal {first} ({report.goal_x:.6g}, {report.goal_y:.6g}){again}"
 
 
 def _level(report: NavigatorReport) -> bytes:
