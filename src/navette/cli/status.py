@@ -18,6 +18,7 @@ from navette.navigation.stack.pose_error import PoseError
 from navette.navigation.stack.summary import RunSummary
 from navette.runtime import Stopwatch
 from navette.runtime.stage.commander import Commander
+from navette.runtime.stage.status import spelled
 
 if TYPE_CHECKING:
     from navette.navigation.stack.monitor import RunProgress
@@ -118,7 +119,7 @@ class StatusScreen:
         for goal in summary.goals:
             if goal.result == "reached":
                 continue
-            line = f"✗ goal {_point(goal.goal)} {goal.result}"
+            line = f"✗ goal {_point(goal.goal)} {spelled(goal.result)}"
             if line in self._reported:
                 continue
             left = goal.distance_left_m
@@ -186,7 +187,7 @@ class StatusScreen:
         if progress.failed:
             return Text(f"✗ {where} {progress.state}", style="red")
         if progress.state == _CANCELED:
-            return Text(f"✗ {where} {progress.state}", style="yellow")
+            return Text(f"✗ {where} {spelled(progress.state)}", style="yellow")
         if progress.goal_id not in self._longest_m:
             self._longest_m[progress.goal_id] = 0.0
             again = f", retry {progress.retry}" if progress.retry else ""

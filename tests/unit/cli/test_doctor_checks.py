@@ -321,6 +321,11 @@ def test_clocks() -> None:
             "no_path",
         ),
         (
+            StageStatus("/planner/status", "canceled", 1, 0.1),
+            Rating.WARNING,
+            "cancelled",
+        ),
+        (
             StageStatus("/planner/status", "following", 0, 7.0),
             Rating.PROBLEM,
             "no status for 7.0 s, last state following",

@@ -83,7 +83,7 @@ def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
     lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
     assert lines == [
         "→ goal (1.0, 2.0)",
-        "✗ goal (1.0, 2.0) canceled",
+        "✗ goal (1.0, 2.0) cancelled",
         "✗ goal (1e+308, -3.0) goal_outside_map",
         "✗ goal_not_finite",
     ]

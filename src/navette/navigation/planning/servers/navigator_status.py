@@ -4,7 +4,7 @@ from navette.msgs import topics
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.reports import NavigatorReport, Phase
 from navette.runtime import StageNode
-from navette.runtime.stage.status import StatusReporter
+from navette.runtime.stage.status import StatusReporter, spelled
 
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
@@ -46,7 +46,7 @@ class NavigatorStatus:
             self._fault = report.fault
             logger.error(f"{goal}: {report.message}: {report.fault}")
         elif report.failed:
-            logger.warning(f"{goal}: {report.message}")
+            logger.warning(f"{goal}: {spelled(report.message)}")
         elif report.message == Phase.FOLLOWING:
             near = "" if report.plan == Outcome.OK else f" ({report.plan})"
             logger.info(f"{goal}: {report.distance_left_m:.1f} m to go{near}")
