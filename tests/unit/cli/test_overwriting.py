@@ -54,11 +54,13 @@ def shown(*words: str) -> str:
         patch.setattr("sys.__stdout__", out)  # its size is the terminal's
         with suppress(SystemExit):  # of Ctrl-C
             app(list(words), standalone_mode=False)
-        out.flush()
-        text = os.read(here, 65536).decode()
-    os.close(here)
     os.close(there)
-    return text
+    data = b""
+    with suppress(OSError):  # EIO: the other end is closed
+        while part := os.read(here, 65536):
+            data += part
+    os.close(here)
+    return data.decode()
 
 
 @pytest.mark.parametrize(
