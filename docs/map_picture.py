@@ -13,11 +13,12 @@ from navette.geometry.map_files import read_occupancy_map
 
 PICTURE = Path(__file__).parent / "images" / "map.png"
 SCALE, MARGIN = 2, 12
+# The live view's colours.
 UNKNOWN, FREE, WALL, LINE = (
-    (226, 229, 233),
-    (255, 255, 255),
-    (31, 41, 55),
-    (37, 99, 235),
+    (228, 224, 216),
+    (255, 253, 249),
+    (28, 32, 37),
+    (191, 62, 10),
 )
 
 

@@ -17,10 +17,15 @@ NavetteError
                                         instance of the original class
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from difflib import SequenceMatcher, get_close_matches
 from pathlib import Path
 from types import MemberDescriptorType
 from typing import Any
+
+_FEW = 8  # names that are listed in any case
+_MOST_SIMILAR = 3
+_RATIO_MARGIN = 0.05  # of SequenceMatcher, below the best ratio
 
 
 def join_names(names: Sequence[str], most: int) -> str:
@@ -28,6 +33,30 @@ def join_names(names: Sequence[str], most: int) -> str:
     if len(names) <= most:
         return ", ".join(names)
     return f"{', '.join(names[:most])} and {len(names) - most} more"
+
+
+def similar_names(name: str, known: Collection[str]) -> list[str]:
+    """Return the known names that are nearly as similar to a name as the best one."""
+    close = get_close_matches(name, known, n=_MOST_SIMILAR)
+    ratio = {each: SequenceMatcher(None, each, name).ratio() for each in close}
+    least = max(ratio.values(), default=0.0) - _RATIO_MARGIN
+    return [each for each in close if ratio[each] >= least]
+
+
+def instead_of(name: str, known: Collection[str], *, see_all: str) -> str:
+    """Return the end of a message about an unknown name: which names are known.
+
+    Of many names, only similar ones are listed, and where to see all; if none is
+    similar, all are listed.
+
+    Args:
+        see_all: a command or place that lists the known names.
+    """
+    close = similar_names(name, known)
+    text = f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
+    if close and len(known) > _FEW:
+        return f"{text} (all {len(known)}: {see_all})"
+    return f"{text}; known: {', '.join(sorted(known)) or 'none'}"
 
 
 class NavetteError(Exception):

@@ -25,8 +25,10 @@ _DECISIVE = ("success", "score")  # a faster method may come closer to obstacles
 
 def bench(options: BenchOptions) -> None:
     """Drive a set of worlds and measure success, contacts, time and score."""
+    from navette.cli.output import hanging
     from navette.navigation.bench.statistics import compare
     from navette.navigation.bench.summary_text import (
+        LABEL_COLUMNS,
         comparison_text,
         plain,
         summary_text,
@@ -51,10 +53,11 @@ def bench(options: BenchOptions) -> None:
         click.echo(json.dumps(plain(runs, against)))
     else:
         for each in runs:
-            click.echo(summary_text(each.summary, each.name))
+            text = summary_text(each.summary, each.name)
+            click.echo(hanging(text, LABEL_COLUMNS))
         for line in mine.failures():
-            click.echo(line)
-        click.echo(comparison_text(against), nl=False)
+            click.echo(hanging(line, 2))
+        click.echo(hanging(comparison_text(against), LABEL_COLUMNS), nl=False)
     worse = any(each.is_worse for each in against if each.measure in _DECISIVE)
     if mine.summary.success < options.min_success or worse:
         raise click.exceptions.Exit(FAILED)

@@ -23,6 +23,7 @@ from navette.cli.app import (
     World,
 )
 from navette.cli.arguments import parse_speed
+from navette.cli.hanging_indent import print_beside
 from navette.cli.methods import MethodOptions
 from navette.cli.options import Option
 from navette.cli.view_options import DEFAULT_VIEW, ViewOptions
@@ -115,11 +116,12 @@ class _Screen:
 
     def on_goal(self, frontier: "Frontier", report: "ExplorationReport") -> None:
         x, y = frontier.goal
-        self._print(
-            f"{report.time_s:8.1f} s  → frontier ({x:.1f}, {y:.1f}), "
+        text = (
+            f"→ frontier ({x:.1f}, {y:.1f}), "
             f"{frontier.length_m:.1f} m long, {frontier.way_m:.1f} m away; "
             f"{report.coverage:.0%} of the boundary known, {report.free_m2:.0f} m² free"
         )
+        print_beside(self.console, Text(f"{report.time_s:8.1f} s  "), Text(text))
 
     def on_end(self, report: "ExplorationReport", contacts: int | None) -> None:
         word, style = (
@@ -134,10 +136,7 @@ class _Screen:
             f"{report.free_m2:.0f} m² free, {report.goals} goals, "
             f"{report.path_length_m:.0f} m driven in {report.time_s:.0f} s{touched}"
         )
-        self._print(Text.assemble((f"{word}: ", style), text))
-
-    def _print(self, text: str | Text) -> None:
-        self.console.print(text, soft_wrap=True)
+        print_beside(self.console, Text(f"{word}: ", style), Text(text))
 
 
 def _explore_simulated(screen: _Screen, options: Any, *, as_json: bool) -> int:

@@ -13,7 +13,11 @@ from typing import Any
 import click
 
 from navette.cli.session import fail
+from navette.cli.stderr import filled
 from navette.files.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
+
+# Overwriting line by line does not flicker, unlike clearing the screen first.
+_CLEAR, _HOME, _END_OF_LINE, _BELOW = "\x1b[2J", "\x1b[H", "\x1b[K", "\x1b[J"
 
 
 def is_terminal() -> bool:
@@ -46,6 +50,13 @@ def wrapped(text: str, indent: int) -> list[str]:
     )
 
 
+def hanging(lines: str, indent: int) -> str:
+    """Wrap each line at spaces, with an indent; unchanged in a pipe."""
+    if not is_terminal():
+        return lines
+    return "\n".join(filled(line, indent) for line in lines.split("\n"))
+
+
 def harmless(text: str) -> str:
     """Escape control characters of received text, on a terminal only."""
     return escaped(text) if is_terminal() else text
@@ -56,10 +67,33 @@ def show(text: str = "") -> None:
 
     The command fails if they cannot be written; a broken pipe raises.
     """
+    _write(_harmless_but_coloured(text))
+
+
+def show_over(text: str, *, rows: int | None = None, clear: bool = False) -> None:
+    """Print lines over earlier ones on a terminal; below them in a pipe.
+
+    Only this function moves the cursor. The text is escaped as in :func:`show`.
+
+    Args:
+        rows: how many rows above the cursor to overwrite; None: the whole screen.
+        clear: clear the screen first.
+    """
+    if not is_terminal():
+        show(text)
+        return
+    start = _HOME if rows is None else f"\x1b[{rows}F" if rows else ""
+    lines = _harmless_but_coloured(text).replace("\n", f"{_END_OF_LINE}\n")
+    _write(f"{_CLEAR if clear else ''}{start}{lines}{_END_OF_LINE}{_BELOW}")
+
+
+def _harmless_but_coloured(text: str) -> str:
+    harmless_text = escaped_but_coloured(text)
+    return harmless_text if harmless_text != text and is_terminal() else text
+
+
+def _write(text: str) -> None:
     try:
-        harmless_text = escaped_but_coloured(text)
-        if harmless_text != text and is_terminal():
-            text = harmless_text
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     except BrokenPipeError:

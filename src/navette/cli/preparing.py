@@ -72,7 +72,7 @@ def prepare(
     progress = Preparation()
     with _page(options, progress) as url:
         where = f"; the live view {url} opens already" if url else ""
-        announce(f"first start: compiling kernels, about ten seconds{where}")
+        announce(f"first start: compiling kernels, up to a minute, once{where}")
         if _compile(progress, show):
             note_prepared(navette.__version__)
         announce(f"{progress.kernels} kernels compiled in {progress.seconds:.1f} s")

@@ -11,11 +11,13 @@ from rich.status import Status
 from rich.table import Table
 from rich.text import Text
 
+from navette.cli.hanging_indent import print_beside
 from navette.msgs.topics import CMD_VEL_NAV
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.summary import PoseError, RunSummary
 from navette.runtime import Stopwatch
 from navette.runtime.stage.commander import Commander
+from navette.runtime.stage.status import spelled
 
 if TYPE_CHECKING:
     from navette.navigation.stack.monitor import RunProgress
@@ -29,6 +31,7 @@ _LONG_M = 1e6  # coordinates from here on are shown with an exponent
 _EXACT_M = 0.005  # a smaller error of the pose is not shown
 _NOT_FINITE = "goal_not_finite"
 _CANCELED = "canceled"
+_FOLLOWING = "following"
 
 
 class StatusScreen:
@@ -106,12 +109,10 @@ class StatusScreen:
         word = "interrupted" if interrupted else "done"
         good = summary.contacts == 0 and reached == len(self._options.goals)
         good &= summary.missed_m is None
-        self._console.print(
-            Text.assemble(
-                (f"{word}: ", "bold green" if good else "bold yellow"),
-                ", ".join(part for part in parts if part),
-            ),
-            soft_wrap=True,
+        print_beside(
+            self._console,
+            Text(f"{word}: ", "bold green" if good else "bold yellow"),
+            Text(", ".join(part for part in parts if part)),
         )
 
     def _report_open_goals(self, summary: RunSummary) -> None:
@@ -119,17 +120,17 @@ class StatusScreen:
         for goal in summary.goals:
             if goal.result == "reached":
                 continue
-            line = f"✗ goal {_point(goal.goal)} {goal.result}"
+            line = f"✗ goal {_point(goal.goal)} {spelled(goal.result)}"
             if line in self._reported:
                 continue
             left = goal.distance_left_m
             if math.isfinite(left):
                 line += f", {left:.1f} m left"
             stamp = Text(f"{summary.sim_time_s:8.1f} s  ", style="dim")
-            self._console.print(stamp + Text(line, style="yellow"), soft_wrap=True)
+            print_beside(self._console, stamp, Text(line, style="yellow"))
 
     def report_failure(self, text: str) -> None:
-        self._console.print(Text(text, style="bold red"), soft_wrap=True)
+        print_beside(self._console, Text(), Text(text, style="bold red"))
 
     def _show_head(self, simulation: "Simulation") -> None:
         options = self._options
@@ -161,7 +162,7 @@ class StatusScreen:
     def _print(self, progress: "RunProgress", text: Text | None) -> None:
         if text is not None:
             stamp = Text(f"{progress.sim_time_s:8.1f} s  ", style="dim")
-            self._console.print(stamp + text, soft_wrap=True)
+            print_beside(self._console, stamp, text)
 
     def _takeover(self, progress: "RunProgress") -> Text | None:
         """Return a line when another source than navigation begins or ends."""
@@ -187,10 +188,11 @@ class StatusScreen:
         if progress.failed:
             return Text(f"✗ {where} {progress.state}", style="red")
         if progress.state == _CANCELED:
-            return Text(f"✗ {where} {progress.state}", style="yellow")
+            return Text(f"✗ {where} {spelled(progress.state)}", style="yellow")
         if progress.goal_id not in self._longest_m:
             self._longest_m[progress.goal_id] = 0.0
-            return Text(f"→ {where}")
+            again = f", retry {progress.retry}" if progress.retry else ""
+            return Text(f"→ {where}{again}")
         return None
 
     def _line(self, simulation: "Simulation") -> RenderableType:
@@ -202,7 +204,7 @@ class StatusScreen:
             Text(f"{progress.sim_time_s:8.1f} s", style="dim"),
             self._bar(progress),
             Text(_left(progress)),
-            Text(progress.control or progress.state, style="cyan"),
+            Text(_activity(progress), style="cyan"),
             Text(f"×{simulation.real_time_factor():.2f}", style="dim"),
         )
         return line
@@ -210,7 +212,7 @@ class StatusScreen:
     def _bar(self, progress: "RunProgress") -> Text:
         left = progress.distance_left_m
         width = max(0, min(_WIDTH, self._console.width - _BESIDE_BAR))
-        if progress.goal is None or left is None:
+        if left is None or not _is_driven_to(progress):
             return Text("─" * width, style="dim")
         longest = max(self._longest_m.get(progress.goal_id, 0.0), left, 1e-6)
         self._longest_m[progress.goal_id] = longest
@@ -240,11 +242,28 @@ def _pose_error(error: PoseError) -> str:
     return f"pose error {error.final:.2f} m ({worst})"
 
 
+def _has_goal(progress: "RunProgress") -> bool:
+    """Whether there is a goal that was not cancelled."""
+    return progress.goal is not None and progress.state != _CANCELED
+
+
+def _is_driven_to(progress: "RunProgress") -> bool:
+    """Whether the goal neither failed nor was cancelled."""
+    return _has_goal(progress) and not progress.failed
+
+
+def _activity(progress: "RunProgress") -> str:
+    """Return what the planner does or how the goal ended; while it drives, control."""
+    if _has_goal(progress) and progress.state != _FOLLOWING:
+        return progress.state
+    return progress.control or progress.state
+
+
 def _left(progress: "RunProgress") -> str:
     if progress.goal is None or progress.state == _CANCELED:
         return "waiting for a goal"
     to = f"to {_point(progress.goal)}"
-    if progress.distance_left_m is None:
+    if progress.distance_left_m is None or not _is_driven_to(progress):
         return to
     return f"{progress.distance_left_m:5.1f} m {to}"
 

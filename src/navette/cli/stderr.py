@@ -24,22 +24,26 @@ def print_error(text: str) -> None:
 def _print(text: str, **style: Any) -> None:
     text = escaped(text)
     if sys.stderr.isatty():
-        text = "\n".join(map(_wrapped, text.split("\n")))
+        text = "\n".join(map(filled, text.split("\n")))
         if "NO_COLOR" not in os.environ:
             text = click.style(text, **style)
     sys.stderr.write(f"{text}\n")
     sys.stderr.flush()
 
 
-def _wrapped(line: str) -> str:
-    """Wrap a line at spaces to the terminal's width; long words are not broken."""
+def filled(line: str, indent: int = 2) -> str:
+    """Wrap a line at spaces to the terminal's width; long words are not broken.
+
+    Args:
+        indent: columns before the second and further lines.
+    """
     width = shutil.get_terminal_size().columns
     if len(line) <= width:
         return line
     return textwrap.fill(
         line,
         width,
-        subsequent_indent="  ",
+        subsequent_indent=" " * indent,
         break_long_words=False,
         break_on_hyphens=False,
         replace_whitespace=False,

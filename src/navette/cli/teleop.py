@@ -143,24 +143,26 @@ def _shown(driver: KeyDriver, link: "TeleopLink") -> Iterator[Callable[[], None]
     from rich.live import Live
     from rich.text import Text
 
+    from navette.cli.hanging_indent import in_rows
+
     console = Console(stderr=True, highlight=False)
-    keys = Text()
-    for key, meaning in _HELP:
-        keys.append(f"{key} ", style="bold").append(f"{meaning}   ", style="dim")
-    console.print(keys, soft_wrap=True)
+    keys = [
+        Text.assemble((f"{key} ", "bold"), (meaning, "dim")) for key, meaning in _HELP
+    ]
+    console.print(in_rows(keys, console.width), soft_wrap=True)
 
     def line() -> Text:
-        text = Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")
-        topic = link.topic
+        parts = [Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")]
+        topic, commander = link.topic, link.commander
         if not topic:
-            return text.append(f"   no subscription on {link.wanted}", style="yellow")
-        text.append(f"   → {topic}", style="dim")
-        commander = link.commander
-        if commander.is_stopped:
-            return text.append("   EMERGENCY STOP: r releases it", style="bold red")
-        if commander.name:
-            text.append(f"   {commander.text} commands", style="cyan")
-        return text
+            parts.append(Text(f"no subscription on {link.wanted}", style="yellow"))
+        else:
+            parts.append(Text(f"→ {topic}", style="dim"))
+            if commander.is_stopped:
+                parts.append(Text("EMERGENCY STOP: r releases it", style="bold red"))
+            elif commander.name:
+                parts.append(Text(f"{commander.text} commands", style="cyan"))
+        return in_rows(parts, console.width)
 
     with Live(line(), console=console, auto_refresh=False, transient=True) as live:
         yield lambda: live.update(line(), refresh=True)

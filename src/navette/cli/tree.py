@@ -70,7 +70,7 @@ def _check(file: Path) -> None:
 
 def _watch(once_s: float | None) -> None:
     """Print the tree whenever it changes; with a time, print it once."""
-    from navette.cli.output import is_terminal, show
+    from navette.cli.output import is_terminal, show, show_over
     from navette.cli.session import connect, fail, wait_for
     from navette.msgs import topics
     from navette.msgs.std_msgs.msg import String
@@ -78,14 +78,16 @@ def _watch(once_s: float | None) -> None:
 
     topic = topics.BEHAVIOR_TREE
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    clears = once_s is None and is_terminal()
     with connect() as node:
         seen: list[str] = []
 
         def receive(message: String) -> None:
             seen.append(message.data)
             text = painted(message.data) if is_terminal() else message.data
-            show(f"\x1b[2J\x1b[H{text}" if clears else text)
+            if once_s is None:
+                show_over(text, clear=True)
+            else:
+                show(text)
 
         node.create_subscription(String, topic.name, receive, latched)
         if once_s is None:
@@ -112,6 +114,9 @@ def painted(text: str) -> str:
     from rich.console import Console
     from rich.text import Text
 
+    from navette.files.untrusted.escaping import escaped
+
+    text = escaped(text)  # rich removes some control characters, which moves the signs
     styled = Text(text)
     for sign, style in _PAINT.items():
         start = text.find(sign)

@@ -17,7 +17,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from navette.errors import ParameterError
+from navette.errors import ParameterError, instead_of
 
 
 @dataclass(frozen=True)
@@ -129,14 +129,16 @@ class Params:
         """Make parameters from plain values.
 
         Raises:
-            ParameterError: an unknown key (the error lists the known ones), or a wrong
+            ParameterError: an unknown key (the error names similar ones), or a wrong
                 value.
         """
         known = [field.name for field in dataclasses.fields(cls)]
         for key in values:
             if key not in known:
+                see_all = f"the fields of {cls.__name__}"
                 raise ParameterError(
-                    f"unknown parameter {key!r}; known: {', '.join(sorted(known))}"
+                    f"unknown parameter {key!r}"
+                    f"{instead_of(key, known, see_all=see_all)}"
                 )
         return cls(**values)
 

@@ -11,6 +11,7 @@ from navette.errors import (
     NavetteError,
     ParameterError,
     UnknownNameError,
+    instead_of,
 )
 
 
@@ -148,7 +149,9 @@ class ParameterNotDeclaredException(ParameterException):
         where = f" on node {node}" if node else ""
         text = f"parameter not declared{where}"
         if known is not None:
-            text += f" (known: {', '.join(sorted(known)) or 'none'})"
+            name = parameters if isinstance(parameters, str) else ", ".join(parameters)
+            see_all = f"navette param list {node}".rstrip()
+            text += f" ({instead_of(name, known, see_all=see_all).removeprefix('; ')})"
         super().__init__(text, parameters)
 
 

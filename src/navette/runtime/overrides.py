@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-from navette.errors import ParameterError
+from navette.errors import ParameterError, instead_of, similar_names
 from navette.runtime.arguments import ParameterArgument
 from navette.runtime.parameter_files import read_parameter_file
 
@@ -165,11 +165,18 @@ class ParameterOverrides:
             return
         if any(names is None or name in names for names in known.values()):
             return
-        listed = "; ".join(
-            f"{node}: {', '.join(sorted(names or [])) or 'none'}"
-            for node, names in sorted(known.items())
-        )
+        every = {each for names in known.values() for each in names or ()}
+        nodes = next(iter(known)) if len(known) == 1 else "NODE"
+        if similar_names(name, every):
+            see_all = f"navette param list {nodes}, while it runs"
+            end = instead_of(name, every, see_all=see_all)
+        else:
+            listed = (
+                f"{node}: {', '.join(sorted(names or [])) or 'none'}"
+                for node, names in sorted(known.items())
+            )
+            end = f"; known: {'; '.join(listed)}"
         raise ParameterError(
             f"{override.origin}: unknown parameter {name!r} for "
-            f"{override.pattern!r}; known: {listed}"
+            f"{override.pattern!r}{end}"
         )

@@ -321,6 +321,11 @@ def test_clocks() -> None:
             "no_path",
         ),
         (
+            StageStatus("/planner/status", "canceled", 1, 0.1),
+            Rating.WARNING,
+            "cancelled",
+        ),
+        (
             StageStatus("/planner/status", "following", 0, 7.0),
             Rating.PROBLEM,
             "no status for 7.0 s, last state following",
@@ -356,6 +361,15 @@ def test_the_motion_of_the_robot() -> None:
 
 
 HERE = "tcp/127.0.0.1:7447"
+
+
+def test_a_command_line_is_quoted_for_a_shell() -> None:
+    words = ("python", "-u", "/bin/navette", "sim", "--robot", "", "--sensor=")
+    assert Process(1, 0, words).command == "navette sim --robot '' --sensor="
+    assert Process(1, 0, ("nginx: worker process",)).command == "nginx: worker process"
+    assert Process(1, 0, ()).command == "?"
+
+
 DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import click
 import pytest
 
-from navette.cli.output import beside, json_text, show
+from navette.cli.output import beside, hanging, json_text, show
 from navette.cli.session import fail
 from navette.cli.stderr import note
 from navette.cli.topic.echo_options import Style
@@ -129,3 +129,17 @@ def test_a_closed_pipe_is_not_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdout", Closed())
     with pytest.raises(BrokenPipeError):
         show("x")
+
+
+def test_lines_are_wrapped_at_words_on_a_terminal_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "30")
+    lines = "lost seconds  turning in place 1.20, final 0.30\nCPU  control 3 %\n"
+    assert hanging(lines, 14) == lines
+    monkeypatch.setattr("navette.cli.output.is_terminal", lambda: True)
+    assert hanging(lines, 14) == (
+        "lost seconds  turning in place\n"
+        "              1.20, final 0.30\n"
+        "CPU  control 3 %\n"
+    )

@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 from rich.console import Console
+from rich.text import Text
 
+from navette.cli.hanging_indent import in_rows, print_beside
 from navette.cli.status import StatusScreen
 from navette.navigation.missions.sequence import GoalOutcome
 from navette.navigation.stack import RunOptions
@@ -81,7 +83,7 @@ def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
     lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
     assert lines == [
         "→ goal (1.0, 2.0)",
-        "✗ goal (1.0, 2.0) canceled",
+        "✗ goal (1.0, 2.0) cancelled",
         "✗ goal (1e+308, -3.0) goal_outside_map",
         "✗ goal_not_finite",
     ]
@@ -152,3 +154,78 @@ def test_a_map_in_another_frame_gives_no_pose_error() -> None:
     line = reported(pose_error_m=PoseError(None, None, map_fits_world=False))
     assert "pose error unknown (the map is not in the world's frame)" in line
     assert "pose unknown" in reported(pose_error_m=PoseError(None, None))
+
+
+def line_of(progress: RunProgress) -> str:
+    screen = StatusScreen(RunOptions())
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    run = SimpleNamespace(progress=lambda: progress, real_time_factor=lambda: 1.0)
+    screen._console.print(screen._line(run))
+    return shown.getvalue()
+
+
+def test_the_bar_is_empty_without_a_plan() -> None:
+    planned = RunProgress(
+        goal=(6.2, -3.4), goal_id="1", state="following", control="following",
+        distance_left_m=0.0,
+    )  # fmt: skip
+    assert "━" in line_of(planned)
+    assert "0.0 m to (6.2, -3.4)  following" in line_of(planned)
+    planning = replace(
+        planned, state="planning", control="idle", distance_left_m=None
+    )  # fmt: skip
+    assert "━" not in line_of(planning)
+    assert "─  to (6.2, -3.4)  planning" in line_of(planning)
+    failed = replace(planned, state="no_path", control="idle", failed=True)
+    assert "━" not in line_of(failed)
+    assert "─  to (6.2, -3.4)  no_path" in line_of(failed)
+    cancelled = replace(planned, state="canceled", control="idle")
+    assert "━" not in line_of(cancelled)
+    assert "─  waiting for a goal  idle" in line_of(cancelled)
+
+
+def test_lines_are_wrapped_at_words_below_their_text() -> None:
+    shown = io.StringIO()
+    console = Console(
+        file=shown, width=40, force_terminal=True, color_system=None, highlight=False
+    )
+    text = "1 of 1 goals reached, minimum clearance 0.07 m, pose error 0.01 m"
+    print_beside(console, Text("done: "), Text(text))
+    assert [line.rstrip() for line in shown.getvalue().splitlines()] == [
+        "done: 1 of 1 goals reached, minimum",
+        "      clearance 0.07 m, pose error 0.01",
+        "      m",
+    ]
+    shown = io.StringIO()
+    print_beside(Console(file=shown, width=40), Text("done: "), Text(text))
+    assert shown.getvalue() == f"done: {text}\n"
+
+
+def test_a_line_breaks_between_its_parts() -> None:
+    parts = [Text("0.50 m/s"), Text("→ /cmd_vel_teleop"), Text("EMERGENCY STOP")]
+    assert in_rows(parts, 80).plain == "0.50 m/s   → /cmd_vel_teleop   EMERGENCY STOP"
+    assert in_rows(parts, 30).plain == "0.50 m/s   → /cmd_vel_teleop\nEMERGENCY STOP"
+    assert in_rows(parts, 10).plain.count("\n") == 2
+
+
+def test_a_retry_is_no_other_goal() -> None:
+    screen = StatusScreen(RunOptions())
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    goal = RunProgress(goal=(1.0, 2.0), goal_id="1", state="planning")
+    again = replace(goal, goal_id="2", retry=1)
+    for progress in (
+        goal,
+        replace(goal, state="stuck", failed=True),
+        again,
+        replace(again, state="stuck", failed=True),
+    ):
+        screen.on_change(progress)
+    lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
+    assert lines == [
+        "→ goal (1.0, 2.0)",
+        "✗ goal (1.0, 2.0) stuck",
+        "→ goal (1.0, 2.0), retry 1",
+        "✗ goal (1.0, 2.0) stuck",
+    ]

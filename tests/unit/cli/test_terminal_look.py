@@ -16,7 +16,7 @@ from navette.msgs.std_msgs.msg import String
 from navette.runtime import Node
 
 # The last one after the others are imported: they take what it has.
-ASKING = ("node", "param.verbs", "service.listing", "output")
+ASKING = ("node", "param.verbs", "service.listing", "doctor.report", "output")
 
 
 @pytest.fixture(autouse=True)
@@ -88,6 +88,25 @@ def test_the_lines_of_the_doctor_are_wrapped_and_indented() -> None:
         "             effort, or the publisher offer",
         "             reliable",
     ]
+
+
+def test_a_long_label_of_the_doctor_is_above_its_text() -> None:
+    findings = [
+        Diagnosis(Rating.GOOD, "Stages", "/localization/status", "localized"),
+        Diagnosis(Rating.NOTE, "Stages", "/lidar/self_filter/status", "passes"),
+    ]
+    assert report_lines(findings, everything=True) == [
+        "Stages",
+        "  ✓ /localization/status  localized",
+        "  · /lidar/self_filter/status",
+        "                          passes",
+    ]
+    with ExitStack() as stack:
+        for name in ("output", "doctor.report"):
+            stack.enter_context(patch(f"navette.cli.{name}.is_terminal", lambda: False))
+        assert report_lines(findings, everything=True)[-1] == (
+            "  · /lidar/self_filter/status  passes"
+        )
 
 
 def test_received_text_does_not_move_the_cursor() -> None:

@@ -341,7 +341,9 @@ def test_an_overwritten_message_fits_the_screen(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("navette.cli.topic.echo.is_terminal", lambda: True)
+    for module in ("output", "topic.echo"):
+        monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setenv("LINES", "6")
     latch(talker, "scan", SCAN)
@@ -356,7 +358,9 @@ def test_an_overwritten_message_fits_the_screen(
 def test_clearing_prints_each_over_the_last(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("navette.cli.topic.echo.is_terminal", lambda: True)
+    for module in ("output", "topic.echo"):
+        monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
     publish_each(talker, "x", lambda i: Int32(data=i))
     echo_of(talker, "x", count=2, clear=True)
     assert capsys.readouterr().out == (

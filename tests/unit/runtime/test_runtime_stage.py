@@ -189,7 +189,10 @@ def test_descriptors_have_text_range_and_choices() -> None:
         ("echo:gain:=7", r"'gain'.*out of range 0 … 3.*command line"),
         ("echo:mode:=fast", r"'mode'.*'fast'.*one of plain, loud"),
         ("echo:times:=1.5", r"'times'.*DOUBLE.*INTEGER"),
-        ("echo:tmes:=1", r"command line -p echo:tmes.*/echo.*'tmes'.*known: corners"),
+        (
+            "echo:tmes:=1",
+            r"command line -p echo:tmes.*/echo.*'tmes'; did you mean 'times'\? \(all",
+        ),
         ("echo:low:=2.0", r"/echo: low 2.0 must be below high"),
     ],
 )

@@ -30,6 +30,8 @@ _STYLE: Any = {
     "xtick.major.size": 0,
     "ytick.major.size": 0,
     "lines.linewidth": 1.4,
+    "axes.formatter.useoffset": False,  # UTM coordinates in full
+    "axes.formatter.limits": (-4, 9),
     "legend.frameon": False,
     "svg.hashsalt": "navette",  # makes the file reproducible
 }
@@ -111,7 +113,16 @@ def _name(axis: Any, lines: Sequence[Series]) -> None:
     if len(lines) == 1:
         axis.set_title(_label(lines[0]))
     else:
-        axis.legend(loc="best", labelcolor=_INK)
+        # Above the lines: within the axes it would cover some of them.
+        axis.legend(
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            borderpad=0.0,
+            borderaxespad=0.5,
+            handlelength=1.2,
+            ncols=min(len(lines), 2),
+            labelcolor=_INK,
+        )
 
 
 def _label(series: Series) -> str:

@@ -4,6 +4,7 @@ Processes of other users are only partly visible.
 """
 
 import os
+import shlex
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -31,7 +32,7 @@ class Process(NamedTuple):
 
     @property
     def command(self) -> str:
-        """The command line without interpreter and folders."""
+        """The command line without interpreter and folders, quoted for a shell."""
         words = list(self.words)
         if words and Path(words[0]).name.startswith("python"):
             words = words[1:]
@@ -39,7 +40,11 @@ class Process(NamedTuple):
                 words = words[1:]
         if words[:1] == ["-m"]:
             words = words[1:]
-        return " ".join([Path(words[0]).name, *words[1:]]) if words else "?"
+        if not words:
+            return "?"
+        program = Path(words[0]).name
+        # A single word may be a title that the process has set.
+        return shlex.join([program, *words[1:]]) if words[1:] else program
 
 
 def processes() -> list[Process]:

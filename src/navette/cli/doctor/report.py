@@ -5,7 +5,7 @@ from itertools import groupby
 from typing import Any
 
 from navette.cli.doctor.findings import Diagnosis, Rating, count, plural
-from navette.cli.output import harmless, styled, wrapped
+from navette.cli.output import harmless, is_terminal, styled, wrapped
 
 _COLOURS = {
     Rating.GOOD: "green",
@@ -13,6 +13,9 @@ _COLOURS = {
     Rating.WARNING: "yellow",
     Rating.PROBLEM: "red",
 }
+
+
+_MOST_LABEL = 20  # characters of a label beside its text
 
 
 def report_lines(findings: Sequence[Diagnosis], *, everything: bool) -> list[str]:
@@ -26,7 +29,8 @@ def report_lines(findings: Sequence[Diagnosis], *, everything: bool) -> list[str
         for each in findings
         if everything or each.level in (Rating.WARNING, Rating.PROBLEM)
     ]
-    width = max((len(each.what) for each in shown if len(each.what) <= 18), default=0)
+    lengths = [len(each.what) for each in shown]
+    width = max((each for each in lengths if each <= _MOST_LABEL), default=0)
     lines: list[str] = []
     for section, group in groupby(shown, key=lambda each: each.section):
         lines += (
@@ -41,6 +45,9 @@ def _finding_lines(finding: Diagnosis, width: int) -> Iterator[str]:
     mark = styled(finding.level.value, fg=_COLOURS[finding.level], bold=True)
     head = f"  {mark} {finding.what.ljust(width)}  "
     indent = " " * (width + 6)
+    if len(finding.what) > width and is_terminal():
+        yield head.rstrip()  # a label above its text keeps the column
+        head = indent
     quiet = {"dim": True} if finding.level is Rating.NOTE else {}
     for line in wrapped(harmless(finding.text), len(indent)):
         yield head + styled(line, **quiet)

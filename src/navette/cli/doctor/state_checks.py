@@ -6,6 +6,7 @@ from navette.cli.doctor.chain import motion, robot_clause
 from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.msgs.topics import CLOCK
+from navette.runtime.stage.status import spelled
 
 TIME = "Time"
 STAGES = "Stages"
@@ -77,7 +78,7 @@ def _heartbeat(beat: StageStatus, seen: Snapshot) -> Diagnosis:
             data,
         )
     level = Rating.GOOD if beat.level == 0 else Rating.WARNING
-    text = beat.state or "no state"
+    text = spelled(beat.state) or "no state"
     if beat.state.startswith("stale_"):
         text += f": this input is too old{robot_clause(seen)}"
     return Diagnosis(level, STAGES, beat.topic, text, data=data)

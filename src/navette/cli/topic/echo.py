@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from navette.cli.message_types import topic_class
-from navette.cli.output import is_terminal, show
+from navette.cli.output import is_terminal, show, show_over
 from navette.cli.session import endpoints, fail, wait_for
 from navette.cli.stderr import note
 from navette.cli.topic.echo_options import EchoOptions
@@ -22,9 +22,6 @@ from navette.runtime import Node, QoSProfile
 from navette.runtime.qos_events import SubscriptionEventCallbacks
 from navette.transports import EndpointKind
 
-# Overwriting line by line does not flicker, unlike clearing the screen first.
-_HOME, _END_OF_LINE, _BELOW = "\x1b[H", "\x1b[K", "\x1b[J"
-_CLEAR = "\x1b[2J"
 _COLOUR = re.compile(r"\x1b\[[\d;]*m")
 
 
@@ -87,11 +84,9 @@ class Screen:
         if self._options.with_info:
             text = self._with_info(text, info)
         if self._clears:
-            text = _cut_to_screen(text)
-            text = text.replace("\n", f"{_END_OF_LINE}\n")
-            first = _CLEAR if self.count == 1 else ""
-            text = f"{first}{_HOME}{text}{_END_OF_LINE}{_BELOW}"
-        show(text)
+            show_over(_cut_to_screen(text), clear=self.count == 1)
+        else:
+            show(text)
 
     def _text(self, message: Any) -> str | None:
         if self._options.raw:

@@ -1,5 +1,6 @@
 """Subscribe to topics and print the figures of their meters every second."""
 
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,6 +15,7 @@ from navette.cli.output import (
     is_terminal,
     json_text,
     show,
+    show_over,
     styled,
 )
 from navette.cli.session import endpoints, fail, is_hidden, wait_for
@@ -30,6 +32,9 @@ from navette.runtime.time import ClockType
 PERIOD_S = 1.0
 # Best effort avoids retransmissions; the depth keeps bursts complete.
 _QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+_GAP = 3  # columns between those of the table
+_LEAST_NAME = 12  # characters that remain of a topic on a narrow terminal
+_OTHER_ROWS = 4  # of the screen: head, rule, empty row, cursor
 _HEADER = "std_msgs/msg/Header"
 
 
@@ -160,14 +165,40 @@ class Report:
     def _print_table(self, found: dict[str, tuple[Meter, Any]]) -> None:
         head = next(iter(found.values()))[0].columns
         rows = [(t, *meter.row(figures)) for t, (meter, figures) in found.items()]
-        # Wrapped lines would break the count of lines to overwrite.
-        first, *lines = map(cut_to_width, aligned([("topic", *head), *rows], gap=3))
+        first, *lines = _table_on_screen([("topic", *head), *rows])
         width = max(map(len, (first, *lines)))
         text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
-        if is_terminal() and self._lines_above:
-            text = f"\x1b[{self._lines_above}F\x1b[J{text}"
+        show_over(text, rows=self._lines_above)
         self._lines_above = len(lines) + 3
-        show(text)
+
+
+def _table_on_screen(rows: list[tuple[str, ...]]) -> list[str]:
+    """Format a table that fits the terminal; in a pipe, it has its full size.
+
+    Only lines on the screen can be overwritten: wrapped or scrolled ones would remain.
+    """
+    if not is_terminal():
+        return aligned(rows, gap=_GAP)
+    width, height = shutil.get_terminal_size()
+    gap = _GAP
+    wide = max(map(len, aligned(rows, gap=gap)))
+    if wide > width:
+        gap = 2
+        excess = max(map(len, aligned(rows, gap=gap))) - width
+        longest = max(len(topic) for topic, *_ in rows)
+        room = max(longest - excess, _LEAST_NAME)
+        rows = [(_end_of_name(topic, room), *figures) for topic, *figures in rows]
+    lines = [cut_to_width(line) for line in aligned(rows, gap=gap)]
+    most = max(height - _OTHER_ROWS, 2)
+    if len(lines) - 1 > most:
+        left_out = len(lines) - most
+        lines = [*lines[:most], cut_to_width(f"… {left_out} more on a taller terminal")]
+    return lines
+
+
+def _end_of_name(topic: str, room: int) -> str:
+    """Shorten a name at its start: topics of a node differ in their last part."""
+    return topic if len(topic) <= room else f"…{topic[1 - room :]}"
 
 
 def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 from navette.navigation.bench.report import ReportedRun
 from navette.navigation.bench.statistics import MeasureDifference, Summary
 
+LABEL_COLUMNS = 19  # before the text of a line
 _NODES = 5  # with the largest share of the CPU
 
 
@@ -35,13 +36,15 @@ def summary_text(summary: Summary, name: str) -> str:
         + f" of real time; a run ×{_known(summary.real_time_factor, 1)}",
     }
     title = f"{name}\n" if name else ""
-    return title + "\n".join(f"{label:<19}{text}" for label, text in lines.items())
+    return title + "\n".join(
+        f"{label:<{LABEL_COLUMNS}}{text}" for label, text in lines.items()
+    )
 
 
 def comparison_text(against: Sequence[MeasureDifference]) -> str:
     """Return a line for each measure; empty without a comparison."""
     return "".join(
-        f"mine − baseline    {each.measure} {each.difference:+.4f} "
+        f"{'mine − baseline':<{LABEL_COLUMNS}}{each.measure} {each.difference:+.4f} "
         f"[{each.low:+.4f}, {each.high:+.4f}], p = {each.p_value:.4f}, "
         f"{each.pairs} pairs{', worse' if each.is_worse else ''}\n"
         for each in against

@@ -412,9 +412,7 @@ class Navigator:
     def _replace_goal(self, goal: Goal) -> None:
         if self.has_path:
             self._drop_path()
-        self.report = NavigatorReport(
-            goal_id=self.report.goal_id + 1, goal_x=goal.x, goal_y=goal.y
-        )
+        self.report = self.report.followed_by(goal.x, goal.y)
 
     def fail(self, why: Outcome) -> None:
         """End the goal, if there is one, and stop."""

@@ -296,16 +296,16 @@ class PlannerNode(StageNode):
     ) -> Trigger_Response:
         """End the goal (``canceled``) and stop the robot."""
         response.success = True
-        canceled = self._end_goal()
-        response.message = "goal canceled" if canceled else "no goal was active"
+        had_goal = self._end_goal()
+        response.message = "goal cancelled" if had_goal else "no goal was active"
         return response
 
     def _end_goal(self) -> bool:
         """Cancel the goal and stop the robot; return whether there was one."""
         self._runner.drop()
-        canceled = self._navigator.cancel()
+        had_goal = self._navigator.cancel()
         self._publish_path_and_status()
-        return canceled
+        return had_goal
 
     def on_cancel_goal(self, msg: Empty) -> None:
         """End the goal, if no missions do that."""

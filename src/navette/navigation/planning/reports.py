@@ -48,6 +48,8 @@ class NavigatorReport:
     Attributes:
         message: phase, or the named failure.
         goal_id: number of goals received so far.
+        retry: how often the same goal was received again after it had failed, as
+            recoveries of the behaviour tree do.
         result: how the goal ended; empty until then.
         plan: outcome of the newest plan; empty before the first.
         replans: number of plans for this goal after the first.
@@ -57,6 +59,7 @@ class NavigatorReport:
     message: str = Phase.WAITING_FOR_GOAL
     state: State = State.WAITING_FOR_GOAL
     goal_id: int = 0
+    retry: int = 0
     goal_x: float = math.nan
     goal_y: float = math.nan
     distance_left_m: float = 0.0
@@ -65,6 +68,17 @@ class NavigatorReport:
     margin_m: float = math.nan
     replans: int = 0
     fault: str = ""
+
+    def followed_by(self, goal_x: float, goal_y: float) -> "NavigatorReport":
+        """Return the first report of the next goal."""
+        same = (goal_x, goal_y) == (self.goal_x, self.goal_y)
+        again = same and self.failed and self.message != Outcome.CANCELED
+        return NavigatorReport(
+            goal_id=self.goal_id + 1,
+            retry=self.retry + 1 if again else 0,
+            goal_x=goal_x,
+            goal_y=goal_y,
+        )
 
     @property
     def failed(self) -> bool:

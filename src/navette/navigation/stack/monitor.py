@@ -14,10 +14,16 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 @dataclass(frozen=True)
 class RunProgress:
-    """Progress of a run. Metres and simulated seconds."""
+    """Progress of a run. Metres and simulated seconds.
+
+    Attributes:
+        retry: how often the goal was started again after it had failed.
+        distance_left_m: None before the first plan to the goal.
+    """
 
     goal: tuple[float, float] | None = None
     goal_id: str = ""
+    retry: int = 0
     state: str = "starting"
     control: str = ""
     distance_left_m: float | None = None
@@ -50,11 +56,17 @@ class MonitorNode(Node):
         values = {item.key: item.value for item in status.values}
         before = self.progress
         goal = _number(values, "goal_x"), _number(values, "goal_y")
-        left = _number(values, "distance_left_m")
+        has_plan = values.get("plan") != ""  # a planner of one's own may not report it
+        left = _number(values, "distance_left_m") if has_plan else math.nan
+        goal_id = values.get("goal_id", "")
+        retry = before.retry
+        if goal_id != before.goal_id:
+            retry = retry + 1 if before.failed and goal == before.goal else 0
         self.progress = replace(
             before,
             goal=None if math.isnan(goal[0]) else goal,
-            goal_id=values.get("goal_id", ""),
+            goal_id=goal_id,
+            retry=retry,
             state=status.message,
             distance_left_m=None if math.isnan(left) else left,
             failed=status.level >= DiagnosticStatus.ERROR,

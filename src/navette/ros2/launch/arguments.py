@@ -1,9 +1,8 @@
 """Launch arguments of the command line: parse, check, list."""
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidValueError, instead_of
 from navette.ros2.packages.launch import LaunchDescription, LaunchDescriptionEntity
 from navette.ros2.packages.launch.actions import (
     ForEach,
@@ -43,11 +42,10 @@ def unknown_arguments(given: Iterable[str], known: Iterable[str]) -> list[str]:
 
 def unknown_argument_error(name: str, known: Sequence[str]) -> InvalidValueError:
     """Create the error for an undeclared argument, with the closest name."""
-    close = get_close_matches(name, known, n=1)
-    meant = f"; did you mean {close[0]!r}?" if close else ""
-    listed = ", ".join(known) or "none"
+    see_all = "navette launch FILE --show-args"
     return InvalidValueError(
-        f"the launch file has no argument {name!r}{meant} (arguments: {listed})"
+        f"the launch file has no argument {name!r}"
+        f"{instead_of(name, known, see_all=see_all)}"
     )
 
 

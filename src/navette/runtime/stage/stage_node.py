@@ -3,7 +3,6 @@
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
 from functools import partial
 from typing import Any, ClassVar, Self
 
@@ -12,6 +11,7 @@ from navette.errors import (
     NavetteError,
     ParameterError,
     UnknownNameError,
+    instead_of,
 )
 from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
@@ -297,12 +297,12 @@ class StageNode(Node):
     def _check_unknown_overrides(self) -> None:
         for name, override in self._node_overrides.items():
             if not self.has_parameter(name) and not override.is_for_all:
-                known = sorted(self.known_parameters() or [])
-                close = get_close_matches(name, known, n=1)
-                hint = f"; did you mean {close[0]!r}?" if close else ""
+                node = self.get_fully_qualified_name()
+                see_all = f"navette param list {node}, while it runs"
+                known = list(self.known_parameters() or [])
                 raise ParameterError(
-                    f"{override.origin}: node {self.get_fully_qualified_name()} has "
-                    f"no parameter {name!r}{hint}; known: {', '.join(known)}"
+                    f"{override.origin}: node {node} has no parameter {name!r}"
+                    f"{instead_of(name, known, see_all=see_all)}"
                 )
 
     def _check_params(self, parameters: list[Parameter[Any]]) -> SetParametersResult:

@@ -9,6 +9,11 @@ from navette.runtime.stage.stage_node import Output, StageNode
 _PERIOD_S = 0.5
 
 
+def spelled(state: str) -> str:
+    """Return a state as texts spell it; ``canceled`` is published as in ROS."""
+    return "cancelled" if state == "canceled" else state
+
+
 def status_output(topic: str) -> Output:
     """Return the output that a stage declares for its :class:`StatusReporter`."""
     return Output(

@@ -165,7 +165,10 @@ def test_wrong_parameters_are_named(values, text) -> None:
 
 
 def test_an_unknown_input_is_named() -> None:
-    with pytest.raises(ParameterError, match="unknown parameter 'odom7'; known:"):
+    with pytest.raises(
+        ParameterError,
+        match=r"unknown parameter 'odom7'; did you mean 'odom1' or 'odom0'\?",
+    ):
         EkfParams.from_dict({"odom7": "/odom"})
 
 

@@ -258,7 +258,7 @@ def test_a_service_cancels_the_goal(graph: GraphHarness) -> None:
     graph.run_for(1.0)
     answer = client.call_async(Trigger.Request())
     graph.run_for(0.01)
-    assert answer.result().message == "goal canceled"
+    assert answer.result().message == "goal cancelled"
     assert (world.message, world.values["result"]) == ("canceled", "canceled")
     assert not world.paths.last.poses
     answer = client.call_async(Trigger.Request())

@@ -21,7 +21,10 @@ others: {ros__parameters: {a: 1}}
     ("words", "warning"),
     [
         ("-p rate:=2.0 -r chatter:=/radio -r __node:=other", None),
-        ("-p raet:=2.0", "unknown parameter 'raet' .*; known: /ns/talk: rate"),
+        (
+            "-p raet:=2.0",
+            "unknown parameter 'raet' .*; did you mean 'rate'\\?; known: rate",
+        ),
         ("--params-file wrong.yaml", "no node matches '/tlak'; nodes: /ns/talk"),
         ("--params-file stack.yaml", None),
         ("--params-file typo.yaml", "unknown parameter 'raet' for '/ns/talk'"),

@@ -4,7 +4,7 @@ from navette.msgs import topics
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.reports import NavigatorReport, Phase
 from navette.runtime import StageNode
-from navette.runtime.stage.status import StatusReporter
+from navette.runtime.stage.status import StatusReporter, spelled
 
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY, Outcome.LOST)
@@ -41,12 +41,12 @@ class NavigatorStatus:
 
     def _log(self, report: NavigatorReport) -> None:
         logger = self._logger
-        goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
+        goal = goal_text(report)
         if report.fault and report.fault != self._fault:
             self._fault = report.fault
             logger.error(f"{goal}: {report.message}: {report.fault}")
         elif report.failed:
-            logger.warning(f"{goal}: {report.message}")
+            logger.warning(f"{goal}: {spelled(report.message)}")
         elif report.message == Phase.FOLLOWING:
             near = "" if report.plan == Outcome.OK else f" ({report.plan})"
             logger.info(f"{goal}: {report.distance_left_m:.1f} m to go{near}")
@@ -54,6 +54,13 @@ class NavigatorStatus:
             logger.info(
                 f"{goal}: {report.message}" if report.goal_id else "no goal yet"
             )
+
+
+def goal_text(report: NavigatorReport) -> str:
+    """Return the goal with the number of its first attempt."""
+    first = report.goal_id - report.retry
+    again = f", retry {report.retry}" if report.retry else ""
+    return f"goal {first} ({report.goal_x:.6g}, {report.goal_y:.6g}){again}"
 
 
 def _level(report: NavigatorReport) -> bytes:
