@@ -5,7 +5,6 @@ import pty
 import re
 import signal
 import termios
-from collections.abc import Iterator
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -16,28 +15,21 @@ from navette.cli.app import app
 from navette.cli.session import connect
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import (
-    Context,
     DurabilityPolicy,
-    Executor,
     Node,
     QoSProfile,
-    VirtualClock,
 )
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 HOSTILE = "\x1b[2J\x1b[5F\x9b1A\x1b]0;title\x07"
 
 
-@pytest.fixture
-def talker(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
-    """A node in virtual time; the verbs join its context."""
-    with Context(clock=VirtualClock()) as context:
-        for module in ("session", "topic.verbs"):
-            joined = partial(connect, context)
-            monkeypatch.setattr(f"navette.cli.{module}.connect", joined)
-        node = Node("talker", context=context, start_parameter_services=False)
-        Executor(context=context).add_node(node)
-        yield node
+@pytest.fixture(autouse=True)
+def joined(talker: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The verbs join the talker's context."""
+    for module in ("session", "topic.verbs"):
+        join = partial(connect, talker.context)
+        monkeypatch.setattr(f"navette.cli.{module}.connect", join)
 
 
 def shown(*words: str) -> str:

@@ -2,7 +2,7 @@
 
 import json
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import click
@@ -19,25 +19,13 @@ from navette.msgs.geometry_msgs.msg import Point, Pose, PoseArray
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Float64, Header, Int32, String
 from navette.runtime import (
-    Context,
     DurabilityPolicy,
-    Executor,
     Node,
     QoSProfile,
-    VirtualClock,
     qos_profile_sensor_data,
 )
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-@pytest.fixture
-def talker() -> Iterator[Node]:
-    """A node in virtual time; the verb joins its context."""
-    with Context(clock=VirtualClock()) as context:
-        node = Node("talker", context=context, start_parameter_services=False)
-        Executor(context=context).add_node(node)
-        yield node
 
 
 def publish_each(talker: Node, topic: str, make: Callable[[int], Any]) -> None:

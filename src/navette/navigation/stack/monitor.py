@@ -17,7 +17,8 @@ class RunProgress:
     """Progress of a run. Metres and simulated seconds.
 
     Attributes:
-        retry: how often the goal was started again after it had failed.
+        retry: how often the goal was started again after it had failed; 0 if the
+            planner does not report it.
         distance_left_m: None before the first plan to the goal.
     """
 
@@ -58,15 +59,12 @@ class MonitorNode(Node):
         goal = _number(values, "goal_x"), _number(values, "goal_y")
         has_plan = values.get("plan") != ""  # a planner of one's own may not report it
         left = _number(values, "distance_left_m") if has_plan else math.nan
-        goal_id = values.get("goal_id", "")
-        retry = before.retry
-        if goal_id != before.goal_id:
-            retry = retry + 1 if before.failed and goal == before.goal else 0
+        retry = _number(values, "retry")
         self.progress = replace(
             before,
             goal=None if math.isnan(goal[0]) else goal,
-            goal_id=goal_id,
-            retry=retry,
+            goal_id=values.get("goal_id", ""),
+            retry=0 if math.isnan(retry) else int(retry),
             state=status.message,
             distance_left_m=None if math.isnan(left) else left,
             failed=status.level >= DiagnosticStatus.ERROR,

@@ -13,7 +13,7 @@ class PoseError:
     """Distance of the estimated from the true position, m.
 
     Both positions are in the world's frame. In a run on a map that does not fit the
-    world they are in different frames, and there is no error.
+    world they are in different frames, and the error is not defined.
 
     Attributes:
         worst: largest so far, while the robot counted as localized; None: it never did.

@@ -47,6 +47,7 @@ def test_a_goal_becomes_a_path_in_the_map_frame(graph: GraphHarness) -> None:
     assert float(values["goal_x"]) == pytest.approx(8.03)
     assert float(values["distance_left_m"]) == pytest.approx(7.03, abs=0.01)
     assert values["phase"] == "waiting_for_robot_to_reach_goal"
+    assert values["retry"] == "0"
 
 
 def test_an_unchanged_world_publishes_one_path(graph: GraphHarness) -> None:

@@ -44,15 +44,9 @@ def test_the_distance_is_unknown_before_the_first_plan(
     assert progress.distance_left_m == left_m
 
 
-def test_the_same_goal_after_a_failure_is_a_retry() -> None:
-    goal = {"goal_x": "6.2", "goal_y": "-3.4"}
-    drives = [
-        status(state, goal_id=str(number), **goal)
-        for number in (1, 2, 3)
-        for state in ("following", "stuck")
-    ]
-    assert [after(*drives[: i + 1]).retry for i in range(6)] == [0, 0, 1, 1, 2, 2]
-    other = status("planning", goal_id="4", goal_x="0.0", goal_y="0.0")
-    assert after(*drives, other).retry == 0
-    reached = status("reached", goal_id="3", **goal)
-    assert after(reached, status("planning", goal_id="4", **goal)).retry == 0
+@pytest.mark.parametrize(("reported", "retry"), [({"retry": "2"}, 2), ({}, 0)])
+def test_the_planner_reports_retries(reported: dict[str, str], retry: int) -> None:
+    progress = after(
+        status("following", goal_id="3", goal_x="6.2", goal_y="-3.4", **reported)
+    )
+    assert progress.retry == retry

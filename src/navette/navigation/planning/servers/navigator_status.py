@@ -25,6 +25,7 @@ class NavigatorStatus:
             _level(report),
             phase=report.state.value,
             goal_id=report.goal_id,
+            retry=report.retry,
             goal_x=report.goal_x,
             goal_y=report.goal_y,
             distance_left_m=report.distance_left_m,
