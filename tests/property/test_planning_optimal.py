@@ -65,6 +65,26 @@ def test_the_reachable_cells_are_those_with_a_cost_to_go(
     assert np.array_equal(found, field < dijkstra.UNREACHED)
 
 
+@given(GRIDS, st.data(), WEIGHTS, st.sampled_from([0, 12_000, 50_000]))
+def test_a_guide_is_exact_up_to_its_limit_and_a_lower_bound_beyond(
+    cost: np.ndarray, data: st.DataObject, weight: float, beyond: int
+) -> None:
+    start, goal = (ends(data, cost.shape) for _ in range(2))
+    table = EdgeTable(weight=weight)
+    goals = [(goal, 0), (start, 30_000)]
+    field = dijkstra.cost_to_go(cost, goals, table=table)
+    guide = dijkstra.guide_to(cost, goals, table=table, until=start, beyond=beyond)
+    if field[start] == dijkstra.UNREACHED:
+        assert guide.limit == dijkstra.UNREACHED
+    else:
+        assert guide.limit > field[start] + beyond
+    expected = np.minimum(field, guide.limit)
+    expected[table.straight[cost] == 0] = dijkstra.UNREACHED
+    found = [[dijkstra.to_go(guide, row, column) for column in range(cost.shape[1])]
+             for row in range(cost.shape[0])]  # fmt: skip
+    np.testing.assert_array_equal(found, expected)
+
+
 @given(GRIDS, st.data(), WEIGHTS)
 def test_pulled_lines_are_valid_and_not_more_expensive(
     cost: np.ndarray, data: st.DataObject, weight: float

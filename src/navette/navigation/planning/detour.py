@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids import exact_clearances, make_outline
 from navette.navigation.planning import lattice, path_shape
-from navette.navigation.planning.dijkstra import Field, cost_to_go
+from navette.navigation.planning.dijkstra import Guide, guide_to
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_within
 from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, HEURISTIC_WEIGHT
@@ -35,6 +35,9 @@ _FINE_M = 0.05
 # Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
+# How much farther than the start from the goal, in metres driven, cells have their own
+# cost to go: out of a corner the way first leads away from the goal.
+_BEHIND_M = 5.0
 
 
 @dataclass(frozen=True)
@@ -203,7 +206,6 @@ class DetourPlanner:
         grid, params = self.grid, self.params
         world = lattice.LatticeWorld(
             distances=grid.distances,
-            cost=grid.cost,
             factors=grid.factors(),
             guide=self._guide(target, begin),
             spec=grid.spec,
@@ -222,18 +224,23 @@ class DetourPlanner:
             world, begin, goal, self.motions, max_expansions=params.max_expansions
         )
 
-    def _guide(self, target: Target, begin: Pose2) -> Field:
+    def _guide(self, target: Target, begin: Pose2) -> Guide:
         cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
         # The search multiplies the guide by HEURISTIC_WEIGHT, but not the goal's cost.
-        units = off * (
-            _GOAL_PULL / HEURISTIC_WEIGHT * STRAIGHT / self.grid.spec.resolution
-        )
+        per_metre = STRAIGHT / self.grid.spec.resolution
+        units = off * (_GOAL_PULL / HEURISTIC_WEIGHT * per_metre)
         seeds = [
             ((int(row), int(column)), int(unit))
             for (row, column), unit in zip(cells, units, strict=True)
         ]
-        return cost_to_go(self.grid.cost, seeds, table=self.grid.table)
+        return guide_to(
+            self.grid.cost,
+            seeds,
+            table=self.grid.table,
+            until=self.grid.spec.cell_of(begin.x, begin.y),
+            beyond=round(_BEHIND_M * per_metre),
+        )
 
     def _with_route_after(self, poses: Poses, target: Target) -> Poses:
         """Return these poses, or some of them and then the grid's route if cheaper."""

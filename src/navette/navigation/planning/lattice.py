@@ -30,7 +30,7 @@ from navette.navigation.grids import (
     sparse_zeros,
 )
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
-from navette.navigation.planning.dijkstra import Field
+from navette.navigation.planning.dijkstra import Guide
 from navette.navigation.planning.lattice_kernels import (
     BUCKETS,
     HEADING,
@@ -43,7 +43,7 @@ from navette.navigation.planning.lattice_kernels import (
     grow,
 )
 from navette.navigation.planning.lattice_motions import Motions
-from navette.navigation.planning.traversal import STRAIGHT, with_rim
+from navette.navigation.planning.traversal import STRAIGHT
 
 _LARGE_BYTES = 1 << 20  # a search reaches few bins of a map
 
@@ -54,9 +54,8 @@ class LatticeWorld:
 
     Attributes:
         distances: (H, W) to the nearest obstacle.
-        cost: (H, W) of the cells.
-        factors: (256,) float32, cost of a metre by that cost (1 = free).
-        guide: (H, W) cost to go to the goal, units; see :mod:`.dijkstra`.
+        factors: (256,) float32, cost of a metre by that of its cell (1 = free).
+        guide: cost to go to the goal.
         spec: geometry of these grids.
         body: (K, 3) points and disc radii of the body, base frame.
         margin_m: clearance that the body keeps.
@@ -68,9 +67,8 @@ class LatticeWorld:
     """
 
     distances: DistanceLevels
-    cost: NDArray[np.uint8]
     factors: NDArray[np.float32]
-    guide: Field
+    guide: Guide
     spec: GridSpec
     body: NDArray[np.float64]
     margin_m: float
@@ -149,9 +147,8 @@ def _scene(world: LatticeWorld) -> LatticeScene:
     unseen_m = level_metres(world.spec.resolution, 2 * world.outline.radius_m)
     return LatticeScene(
         DistanceGrid(world.distances, frame, float(world.outside_m)),
-        with_rim(world.cost),
         world.factors,
-        np.ascontiguousarray(world.guide),
+        world.guide,
         make_body(world.body),
         world.obstacles,
         world.outline,

@@ -26,7 +26,7 @@ from navette.navigation.planning.bucket_queue import (
     push,
     reserve,
 )
-from navette.navigation.planning.dijkstra import UNREACHED
+from navette.navigation.planning.dijkstra import UNREACHED, Guide, to_go
 
 SHIFT = 10
 BUCKETS = 1 << 13
@@ -49,15 +49,11 @@ HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
 
 
 class LatticeScene(NamedTuple):
-    """Map and body for the kernels; see :class:`.lattice.LatticeWorld`.
-
-    ``rimmed_cost`` has a rim: contiguous, so that the kernel has one type.
-    """
+    """Map and body for the kernels; see :class:`.lattice.LatticeWorld`."""
 
     grid: DistanceGrid
-    rimmed_cost: NDArray[np.uint8]
     factors: NDArray[np.float32]
-    guide: NDArray[np.int64]
+    guide: Guide
     body: Body
     obstacles: ObstacleGrid
     outline: Outline
@@ -155,7 +151,7 @@ def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     tree.links[0, PARENT], tree.links[0, MOVE] = -1, -1
     tree.links[0, ESCAPING] = escaping
     u, v = _to_cells(scene.grid.frame, start[0], start[1])
-    ahead = scene.guide[int(v), int(u)]
+    ahead = to_go(scene.guide, int(v), int(u))
     nothing: Any = np.int64(0)  # a literal would compile the callee a second time
     return _estimate(nothing, ahead) >> SHIFT
 
@@ -290,18 +286,20 @@ def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     cost of several moves.
     """
     u, v = _to_cells(scene.grid.frame, x, y)
-    height, width = scene.guide.shape
+    guide = scene.guide
+    cost, stride = guide.grid.cost, guide.grid.stride
+    height, width = cost.size // stride - 2, stride - 2
     if not (0.0 <= u < width and 0.0 <= v < height):
         return NOWHERE, -1.0
     row, column = int(v), int(u)
-    ahead = scene.guide[row, column]
-    factor = float(scene.factors[scene.rimmed_cost[row + 1, column + 1]])
+    ahead = to_go(guide, row, column)
+    factor = float(scene.factors[cost[(row + 1) * stride + column + 1]])
     u, v = u - 0.5, v - 0.5
     if not (0.0 <= u < width - 1 and 0.0 <= v < height - 1):
         return ahead, factor
     row, column = int(v), int(u)
-    a, b = scene.guide[row, column], scene.guide[row, column + 1]
-    c, d = scene.guide[row + 1, column], scene.guide[row + 1, column + 1]
+    a, b = to_go(guide, row, column), to_go(guide, row, column + 1)
+    c, d = to_go(guide, row + 1, column), to_go(guide, row + 1, column + 1)
     if a >= UNREACHED or b >= UNREACHED or c >= UNREACHED or d >= UNREACHED:
         return ahead, factor
     u, v = u - column, v - row

@@ -16,7 +16,7 @@ from planning_worlds import (
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import GridSpec, make_obstacles, make_outline
-from navette.navigation.planning.dijkstra import cost_to_go
+from navette.navigation.planning.dijkstra import guide_to
 from navette.navigation.planning.lattice import (
     LatticeGoal,
     LatticeResult,
@@ -27,6 +27,7 @@ from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import directions, lengths, turns
 from navette.navigation.planning.planning_grid import BodyShape, open_at, planning_grid
+from navette.navigation.planning.traversal import EdgeTable
 
 COURSE = Footprint.from_flat(COURSE_FOOTPRINT)
 MOTIONS = Motions(step_m=0.3, reach_m=COURSE.circumscribed_radius)
@@ -47,9 +48,8 @@ def plan(
     grid = open_at(grid, spec.cell_of(start.x, start.y), body)
     world = LatticeWorld(
         distances=grid.distances,
-        cost=grid.cost,
         factors=grid.factors(),
-        guide=cost_to_go(
+        guide=guide_to(
             grid.cost, [(spec.cell_of(goal.x, goal.y), 0)], table=grid.table
         ),
         spec=spec,
@@ -129,10 +129,10 @@ def test_the_same_input_gives_the_same_result() -> None:
 def test_start_outside_is_refused() -> None:
     spec = empty_map(4, 4)[1]
     nothing = np.zeros(spec.shape, np.float32)
-    guide = np.zeros(spec.shape, np.int64)
+    cost = np.zeros(spec.shape, np.uint8)
+    guide = guide_to(cost, [((0, 0), 0)], table=EdgeTable())
     world = LatticeWorld(
         nothing,
-        np.zeros(spec.shape, np.uint8),
         np.ones(256, np.float32),
         guide,
         spec,
