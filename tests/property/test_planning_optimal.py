@@ -8,6 +8,7 @@ from hypothesis.extra import numpy as arrays
 from cheapest_path import cheapest
 from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.connection import first_connected
 from navette.navigation.planning.string_pulling import centers, line_cost, pull
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -56,13 +57,15 @@ def test_breadth_first_finds_the_fewest_moves(
 
 
 @given(GRIDS, st.data())
-def test_the_reachable_cells_are_those_with_a_cost_to_go(
+def test_the_first_connected_cell_is_the_first_reachable_one(
     cost: np.ndarray, data: st.DataObject
 ) -> None:
     start, table = ends(data, cost.shape), EdgeTable()
+    cells = np.array([ends(data, cost.shape) for _ in range(4)])
     field = dijkstra.cost_to_go(cost, [(start, 0)], table=table)
-    found = breadth_first.reachable(cost, start, table)
-    assert np.array_equal(found, field < dijkstra.UNREACHED)
+    reached = field[tuple(cells.T)] < dijkstra.UNREACHED
+    expected = int(reached.argmax()) if reached.any() else None
+    assert first_connected(cost, start, cells, table) == expected
 
 
 @given(GRIDS, st.data(), WEIGHTS, st.sampled_from([0, 12_000, 50_000]))

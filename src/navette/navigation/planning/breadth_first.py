@@ -55,24 +55,6 @@ def search(
     return cells, steps_cost(cells, cost, table)
 
 
-def reachable(
-    cost: NDArray[np.uint8], start: Cell, table: EdgeTable
-) -> NDArray[np.bool_]:
-    """Return (H, W) the cells to which a path exists from the start, itself included.
-
-    In less time than the field of costs; none are reached from a closed start.
-    """
-    require_inside(start, cost.shape, "start")
-    grid = SearchGrid.of(cost, table)
-    closed = table.straight[grid.cost] == 0
-    here, rim = grid.index_of(start), 0
-    parent = np.full(closed.size, -1, np.int32)
-    if not closed[here]:
-        queue = np.empty(closed.size, np.int32)
-        _flood(closed, grid.stride, rim, here, parent, queue)
-    return np.asarray(parent.reshape(-1, grid.stride)[1:-1, 1:-1] >= 0)
-
-
 @kernel
 def _flood(
     closed: Any, stride: int, start: int, goal: int, parent: Any, queue: Any

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import GridSpec
-from navette.navigation.planning.breadth_first import reachable
+from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.planning.connection import first_connected
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.traversal import LETHAL, Cell
@@ -21,18 +21,17 @@ def nearest_reachable(
 ) -> tuple[Cell | None, Outcome]:
     """Return the reachable cell nearest to the goal, or None and the reason.
 
-    Reachable cells are found by a flood from the start.
+    The time does not depend on the size of the map.
     """
-    reached = reachable(grid.cost, start, grid.table)
     cells, away = cells_within(grid, goal_xy, tolerance_m)
-    rows, columns = cells[:, 0], cells[:, 1]
-    there = reached[rows, columns]
-    if there.any():
-        best = int(np.argmin(np.where(there, away, np.inf)))
-        return (int(rows[best]), int(columns[best])), Outcome.GOAL_SNAPPED
-    if _is_enclosed(reached, grid, start, body):
+    nearest_first = cells[np.argsort(away, kind="stable")]
+    best = first_connected(grid.cost, start, nearest_first, grid.table)
+    if best is not None:
+        row, column = nearest_first[best].tolist()
+        return (row, column), Outcome.GOAL_SNAPPED
+    if _is_enclosed(grid, start, body):
         return None, Outcome.START_BLOCKED
-    if (grid.cost[rows, columns] == LETHAL).all():
+    if (grid.cost[cells[:, 0], cells[:, 1]] == LETHAL).all():
         return None, Outcome.GOAL_BLOCKED
     return None, Outcome.NO_PATH
 
@@ -62,10 +61,15 @@ def cells_near(
     return cells[near], away[near]
 
 
-def _is_enclosed(
-    reached: NDArray[np.bool_], grid: PlanningGrid, start: Cell, body: BodyShape
-) -> bool:
-    """Return whether the flood stayed within the body's own radius."""
-    cells = np.argwhere(reached)
-    away = np.hypot(*(cells - start).T) * grid.spec.resolution
-    return bool((away <= body.circumscribed_m).all())
+def _is_enclosed(grid: PlanningGrid, start: Cell, body: BodyShape) -> bool:
+    """Return whether no path leads out of the body's own radius."""
+    reach = body.circumscribed_m / grid.spec.resolution
+    # A path that leaves the radius does so within the window.
+    window = CellWindow(start[0], start[0] + 1, start[1], start[1] + 1).grown(
+        math.ceil(reach) + 2, grid.cost.shape
+    )
+    cost = grid.cost[window.slices]
+    middle = start[0] - window.first_row, start[1] - window.first_column
+    cells = np.argwhere(cost != LETHAL)
+    outside = cells[np.hypot(*(cells - middle).T) > reach]
+    return first_connected(cost, middle, outside, grid.table) is None

@@ -10,6 +10,7 @@ import numpy as np
 from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec
 from navette.navigation.planning.body_space import BodySpace
+from navette.navigation.planning.connection import is_cut_off
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import nearest_reachable
@@ -29,7 +30,7 @@ from navette.navigation.planning.tight_places import (
     quick_expansions,
     tight_margin_m,
 )
-from navette.navigation.planning.traversal import STRAIGHT
+from navette.navigation.planning.traversal import STRAIGHT, SearchGrid
 from navette.params.plugins import MethodFaultError
 
 __all__ = ["Goal", "Plan", "Planner"]
@@ -99,7 +100,10 @@ class Planner:
         DetourPlanner(other.grid(), other.body, self.params, other.router, unseen).plan(
             start, Target(goal.x, goal.y, None, reach), None
         )
-        nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
+        grid = other.grid()
+        nearest_reachable(grid, (20, 20), (goal.x, goal.y), reach, other.body)
+        cells = SearchGrid.of(grid.cost, grid.table)
+        is_cut_off(cells, cells.index_of((20, 20)), cells.index_of((0, 0)), 1)
         nothing, body = np.zeros(spec.shape, np.bool_), self.map.footprint
         space = BodySpace(nothing, spec, body, start)
         space.reached_from(np.array([space.start]))

@@ -1,5 +1,7 @@
 """A*, Dijkstra and breadth-first search on the grid."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -112,6 +114,37 @@ def test_exhausted_stamps_are_reset(monkeypatch: pytest.MonkeyPatch) -> None:
     cost = np.zeros((5, 5), np.uint8)
     for column in (4, 3, 2, 4, 1, 2):
         assert search.search(cost, (0, 0), (0, column))[1] == 10_000 * column
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_looking_for_an_enclosed_goal_changes_no_result(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(seed)
+    cost = np.where(rng.random((40, 50)) < 0.35, LETHAL, rng.integers(0, 200, (40, 50)))
+    cost = cost.astype(np.uint8)
+    ends = [tuple(int(rng.integers(n)) for n in cost.shape) for _ in range(40)]
+    queries = list(itertools.pairwise(ends))
+    expected = [AStar().search(cost, *query) for query in queries]
+    monkeypatch.setattr("navette.navigation.planning.astar._BEFORE_LOOK", 8)
+    monkeypatch.setattr("navette.navigation.planning.astar._LOOK_SHARE", 1)
+    for query, before in zip(queries, expected, strict=True):
+        found = AStar().search(cost, *query)
+        assert (found is None) == (before is None)
+        if found is not None and before is not None:
+            assert found[1] == before[1]
+            np.testing.assert_array_equal(found[0], before[0])
+    assert None in expected
+    assert any(each is not None for each in expected)
+
+
+def test_a_search_for_an_enclosed_goal_does_not_expand_the_whole_map() -> None:
+    cost = np.zeros((1500, 1500), np.uint8)
+    cost[1000:1031, 1000:1031] = LETHAL
+    cost[1001:1030, 1001:1030] = 0
+    search = AStar()
+    assert search.search(cost, (100, 100), (1015, 1015)) is None
+    assert np.count_nonzero(search._records) < 250_000
 
 
 def test_field_holds_the_cost_to_the_cheapest_goal() -> None:
