@@ -160,3 +160,21 @@ def test_a_frontier_behind_a_door_is_reached_if_the_robot_fits(
     params = FrontierParams(0.9, 100, 0.9, 1.5, 0.0, 10.0, passage_m)
     found = explore(cells, spec, (3.25, 5.25), params)
     assert len(found.frontiers) == reached
+
+
+def test_unknown_cells_around_the_map_change_nothing() -> None:
+    cells, spec = grid(
+        "##########",
+        "#........ ",
+        "#....#... ",
+        "#.   #....",
+        "#.   ###..",
+    )
+    cells, corner = np.pad(cells, 1, constant_values=-1), Pose2(-0.5, -0.5, 0.0)
+    spec = GridSpec(0.5, cells.shape[1], cells.shape[0], corner)
+    larger = np.pad(cells, ((4, 30), (7, 20)), constant_values=-1)
+    shift = Pose2(-7 * 0.5, -4 * 0.5, 0.0)
+    larger_spec = GridSpec(0.5, larger.shape[1], larger.shape[0], corner @ shift)
+    found = explore(cells, spec, (1.25, 1.25), PARAMS)
+    assert len(found.frontiers) == 2
+    assert explore(larger, larger_spec, (1.25, 1.25), PARAMS) == found

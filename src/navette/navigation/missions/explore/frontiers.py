@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import UNKNOWN, GridSpec, distance_field
+from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec, distance_field
 from navette.navigation.missions.explore.waves import (
     UNREACHED,
     CellIndices,
@@ -104,13 +104,17 @@ def explore(
         visited: frontiers that were still there when their goal was reached. Those near
             to them are left out unless they are to be seen from another place.
     """
-    free, occupied, away = _layers(cells, spec.resolution, params)
-    open_edge = _open_edge(cells, free, away)
+    window = CellWindow.of_known(cells).grown(1, cells.shape)
+    corner = np.array((window.first_row, window.first_column))
+    known = np.ascontiguousarray(cells[window.slices])
+    free, occupied, away = _layers(known, spec.resolution, params)
+    open_edge = _open_edge(known, free, away)
     closed_edge = free & _beside(occupied) & ~open_edge
     open_cells, closed_cells = 0, int(closed_edge.sum())
     # A start within the clearance of an obstacle leaves it through free cells.
     passable = free & (away >= min(params.passage_m, params.clearance_m))
-    steps = steps_from(spec.cell_of(*robot), free, passable)
+    row, column = (spec.cell_of(*robot) - corner).tolist()
+    steps = steps_from((row, column), free, passable)
     steps[away < params.clearance_m] = UNREACHED  # passed, but no place to look from
     longest = max(1, round(params.max_length_m / spec.resolution))
     found, unreachable = [], 0
@@ -119,7 +123,7 @@ def explore(
             continue
         open_cells += len(cluster)
         for piece in _pieces(cluster, longest):
-            frontier = _viewpoint(piece, free, occupied, steps, spec, params)
+            frontier = _viewpoint(piece, free, occupied, steps, spec, corner, params)
             if frontier is not None and _is_hopeless(
                 frontier, failed, visited, params.viewpoint_m / 4
             ):
@@ -135,7 +139,7 @@ def explore(
         frontiers=tuple(found),
         unreachable=unreachable,
         free_m2=float(free.sum()) * cell_m2,
-        known_m2=float((cells >= 0).sum()) * cell_m2,
+        known_m2=float((known >= 0).sum()) * cell_m2,
         open_share=open_cells / total if total else 0.0,
     )
 
@@ -224,11 +228,13 @@ def _viewpoint(
     occupied: Mask,
     steps: NDArray[np.int32],
     spec: GridSpec,
+    corner: CellIndices,
     params: FrontierParams,
 ) -> Frontier | None:
     """Return the frontier with the nearest reachable point that sees half of it.
 
-    The distance is along free cells, from the frontier and from its middle.
+    The distance is along free cells, from the frontier and from its middle. ``corner``
+    is the cell of the map that is the first of these arrays.
     """
     reach = round(params.viewpoint_m / spec.resolution)
     low = np.maximum(piece.min(axis=0) - reach, 0)
@@ -247,9 +253,10 @@ def _viewpoint(
     if best < 0:
         return None
     row, column = candidates[best] + low
+    goal, centre = spec.centers_of(np.array([(row, column), middle]) + corner).tolist()
     return Frontier(
-        goal=spec.center_of(int(row), int(column)),
-        middle=spec.center_of(int(middle[0]), int(middle[1])),
+        goal=tuple(goal),
+        middle=tuple(centre),
         length_m=len(piece) * spec.resolution,
         way_m=float(steps[row, column]) * spec.resolution,
     )
