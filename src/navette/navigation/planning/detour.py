@@ -35,9 +35,9 @@ _FINE_M = 0.05
 # Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
-# How much farther than the start from the goal, in metres driven, cells have their own
-# cost to go: out of a corner the way first leads away from the goal.
-_BEHIND_M = 5.0
+# How much longer than the cheapest the ways are whose cells have their cost to go, in
+# metres driven. A search that met other cells is repeated with longer ones.
+_BEYOND_M, _BEYOND_GROWTH = 5.0, 4.0
 
 
 @dataclass(frozen=True)
@@ -203,28 +203,41 @@ class DetourPlanner:
         self, before: Poses, start: Pose2, target: Target
     ) -> lattice.LatticeResult:
         begin = Pose2(*map(float, before[-1])) if len(before) else start
-        grid, params = self.grid, self.params
-        world = lattice.LatticeWorld(
+        goal = lattice.LatticeGoal(
+            target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL
+        )
+        beyond_m = _BEYOND_M
+        while True:
+            world = self._world(self._guide(target, begin, beyond_m))
+            found = lattice.search(
+                world,
+                begin,
+                goal,
+                self.motions,
+                max_expansions=self.params.max_expansions,
+            )
+            if not world.guide.met:
+                return found
+            beyond_m *= _BEYOND_GROWTH
+
+    def _world(self, guide: Guide) -> lattice.LatticeWorld:
+        grid = self.grid
+        return lattice.LatticeWorld(
             distances=grid.distances,
             factors=grid.factors(),
-            guide=self._guide(target, begin),
+            guide=guide,
             spec=grid.spec,
             body=self.body.points,
             margin_m=grid.margin_m,
-            comfort_m=grid.margin_m + max(params.comfort_m, 0.05),
+            comfort_m=grid.margin_m + max(self.params.comfort_m, 0.05),
             outside_m=grid.outside_m,
             obstacles=grid.exact_obstacles,
             outline=make_outline(self.body.footprint),
             unseen=self._unseen,
         )
-        goal = lattice.LatticeGoal(
-            target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL
-        )
-        return lattice.search(
-            world, begin, goal, self.motions, max_expansions=params.max_expansions
-        )
 
-    def _guide(self, target: Target, begin: Pose2) -> Guide:
+    def _guide(self, target: Target, begin: Pose2, beyond_m: float) -> Guide:
+        """Return the cost to go of the cells on good ways from ``begin``."""
         cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
         # The search multiplies the guide by HEURISTIC_WEIGHT, but not the goal's cost.
@@ -238,8 +251,8 @@ class DetourPlanner:
             self.grid.cost,
             seeds,
             table=self.grid.table,
-            until=self.grid.spec.cell_of(begin.x, begin.y),
-            beyond=round(_BEHIND_M * per_metre),
+            start=self.grid.spec.cell_of(begin.x, begin.y),
+            beyond=round(beyond_m * per_metre),
         )
 
     def _with_route_after(self, poses: Poses, target: Target) -> Poses:

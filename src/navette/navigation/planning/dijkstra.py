@@ -1,8 +1,8 @@
 """Dijkstra's search: the cheapest path from every cell to a goal.
 
 Dijkstra 1959, run from the goal outwards; the open list is a circle of buckets
-(Dial 1969). The wave may stop once it has passed the start. The path has the same cost
-as that of A*; the costs also guide the lattice search.
+(Dial 1969). With a start, the wave spreads towards it first, as in A*, and stops behind
+it. The path has the same cost as that of A*; the costs also guide the lattice search.
 """
 
 from collections.abc import Sequence
@@ -24,6 +24,8 @@ from navette.navigation.planning.bucket_queue import (
 )
 from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
+    DIAGONAL,
+    STRAIGHT,
     Cell,
     EdgeTable,
     SearchGrid,
@@ -38,18 +40,22 @@ Field = NDArray[np.int64]
 
 
 class Guide(NamedTuple):
-    """Cost to go of the cells that are no farther than the start and a bit more.
+    """Cost to go of the cells on the ways from a start to the goals.
 
     Attributes:
         grid: the cells.
-        left: ((H + 2) · (W + 2),) :data:`UNREACHED` less the cost to go, 0 = not
-            reached: what is never written occupies no memory.
-        limit: lower bound on all costs that are not exact; UNREACHED if all are.
+        left: ((H + 2) · (W + 2),) :data:`UNREACHED` less the cost to go, so that what
+            is never written occupies no memory.
+        closed: of the same shape, whether the cost is final.
+        limit: stands for the costs that are not; UNREACHED if all are.
+        met: (1,) whether :func:`to_go` has returned the limit.
     """
 
     grid: SearchGrid
     left: NDArray[np.int64]
+    closed: NDArray[np.uint8]
     limit: int
+    met: NDArray[np.bool_]
 
 
 @PLANNERS.register("dijkstra")
@@ -64,7 +70,8 @@ def search(
 
     None if no path exists, or an end is closed. The start's own cost does not count.
     """
-    guide = guide_to(cost, [(goal, 0)], table=table or EdgeTable(), until=start)
+    table = table or EdgeTable()
+    guide = _spread_from([(goal, 0)], cost, table, until=start)
     here = guide.grid.index_of(start)
     if guide.left[here] == 0:
         return None
@@ -85,7 +92,7 @@ def cost_to_go(
             skipped.
         table: cost of entering a cell.
     """
-    found = guide_to(cost, goals, table=table)
+    found = _spread_from(goals, cost, table)
     return (UNREACHED - found.left).reshape(-1, found.grid.stride)[1:-1, 1:-1]
 
 
@@ -94,16 +101,29 @@ def guide_to(
     goals: Sequence[tuple[Cell, int]],
     *,
     table: EdgeTable,
-    until: Cell | None = None,
-    beyond: int = 0,
+    start: Cell,
+    beyond: int,
 ) -> Guide:
     """Return the cost from cells to the cheapest goal, for :func:`to_go`.
 
     Args:
         cost, goals, table: as for :func:`cost_to_go`.
-        until: no cell farther from the goals than this one gets an exact value …
-        beyond: … unless the difference is no more than this, in units.
+        start: only cells on the cheapest ways from there to the goals get their cost …
+        beyond: … and on ways that cost up to this much more, in units.
     """
+    return _spread_from(goals, cost, table, until=start, beyond=beyond, directed=True)
+
+
+def _spread_from(
+    goals: Sequence[tuple[Cell, int]],
+    cost: NDArray[np.uint8],
+    table: EdgeTable,
+    *,
+    until: Cell | None = None,
+    beyond: int = 0,
+    directed: bool = False,
+) -> Guide:
+    """Spread from the goals to all cells, or to one, perhaps towards it first."""
     for cell, _ in goals:
         require_inside(cell, cost.shape, "goal")
     if until is not None:
@@ -114,22 +134,30 @@ def guide_to(
         sparse_zeros(grid.cost.shape, np.uint8),
         -1 if until is None else grid.index_of(until),
         beyond,
+        directed,
     )
-    seeds = np.array([(r + 1, c + 1, g) for (r, c), g in goals], np.int64)
-    seeds = seeds.reshape(-1, 3)
-    queue = BucketQueue.spanning(table.longest + int(seeds[:, 2].max(initial=0)))
-    return Guide(grid, wave.left, _spread(grid, seeds, wave, queue, new_pool()))
+    cells = np.array([cell for cell, _ in goals], np.int64).reshape(-1, 2) + 1
+    extra = np.array([units for _, units in goals], np.int64)
+    apart = extra.max(initial=0)
+    if directed and len(cells):  # the bounds of two cells differ as far as they lie
+        apart += DIAGONAL * np.ptp(cells, axis=0).max()
+    queue = BucketQueue.spanning(int(apart) + table.longest + DIAGONAL)
+    limit = _spread(grid, cells, extra, wave, queue, new_pool())
+    return Guide(grid, wave.left, wave.closed, limit, np.zeros(1, np.bool_))
 
 
 @kernel(allocates=False)
 def to_go(guide: Any, row: int, column: int) -> int:
-    """Return the cost to go of a cell, at most the limit; UNREACHED without a path."""
+    """Return the cost to go of a cell, or the limit; UNREACHED without a path."""
     at = np.uint64((row + 1) * guide.grid.stride + column + 1)
-    left = guide.left[at]
-    if left == 0 and guide.grid.straight[guide.grid.cost[at]] == 0:
+    if guide.closed[at] != 0:
+        cost: int = UNREACHED - guide.left[at]
+        return cost
+    if guide.limit == UNREACHED or guide.grid.straight[guide.grid.cost[at]] == 0:
         return UNREACHED
-    cost: int = min(UNREACHED - left, guide.limit)
-    return cost
+    guide.met[0] = True
+    limit: int = guide.limit
+    return limit
 
 
 class _Wave(NamedTuple):
@@ -138,35 +166,37 @@ class _Wave(NamedTuple):
     Attributes:
         left: UNREACHED less the least cost so far.
         closed: whether that is final.
-        stop: index of the cell at whose final value the search ends, −1 never.
-        beyond: cost by which it goes farther.
+        stop: index of the start, behind which the wave stops, −1 nowhere.
+        beyond: cost by which ways may be longer than the least.
+        directed: whether the wave spreads towards the start first.
     """
 
     left: NDArray[np.int64]
     closed: NDArray[np.uint8]
     stop: int
     beyond: int
+    directed: bool
 
 
 @kernel
-def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> int:
-    """Lower the costs from the seeds (N, 3) row, column, cost outwards.
+def _spread(grid: Any, cells: Any, extra: Any, wave: Any, queue: Any, pool: Any) -> int:
+    """Lower the costs from cells (N, 2) with an extra cost (N,) outwards.
 
-    Return the cost below which all are final; UNREACHED if all are.
+    Return the cost of a way below which all are final; UNREACHED if all are.
 
     An entry's item is row << 16 | column. A step is charged for the cell it enters, so
     a step of the wave is charged for the cell that it comes from.
     """
-    left = wave.left
-    for i in range(seeds.shape[0]):
-        index = seeds[i, 0] * grid.stride + seeds[i, 1]
-        there = UNREACHED - seeds[i, 2]
-        if grid.straight[grid.cost[index]] != 0 and there > left[index]:
-            left[index] = there
+    bucket: Any = np.int64(UNREACHED)
+    for i in range(cells.shape[0]):
+        row, column = cells[i, 0], cells[i, 1]
+        index, there = row * grid.stride + column, UNREACHED - extra[i]
+        if grid.straight[grid.cost[index]] != 0 and there > wave.left[index]:
+            wave.left[index] = there
             pool = reserve(pool, queue, 1)
-            item = (seeds[i, 0] << 16) | seeds[i, 1]
-            push(pool, queue, seeds[i, 2] >> queue.shift, item)
-    bucket: Any = np.int64(0)
+            slot = (extra[i] + _from_start(grid, wave, row, column)) >> queue.shift
+            push(pool, queue, slot, (row << 16) | column)
+            bucket = min(bucket, slot)
     done = False
     while not done:
         pool = reserve(pool, queue, _NEIGHBOURS)
@@ -180,7 +210,7 @@ def _spread_while_room(
 ) -> tuple[int, bool]:
     """Spread until the wave is done or the pool full; return the bucket and which."""
     cost, stride, straight, diagonal = grid
-    left, closed, stop, beyond = wave
+    left, closed, stop, beyond, _ = wave
     state, shift = queue.state, queue.shift
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
     rows = (-1, 1, 0, 0, -1, -1, 1, 1)
@@ -210,9 +240,22 @@ def _spread_while_room(
                 continue
             left[reached] = there
             closed[reached] = 0
-            item = ((row + rows[k]) << 16) | (column + columns[k])
-            push(pool, queue, (UNREACHED - there) >> shift, item)
+            to_row, to_column = row + rows[k], column + columns[k]
+            way = UNREACHED - there + _from_start(grid, wave, to_row, to_column)
+            push(pool, queue, way >> shift, (to_row << 16) | to_column)
     return bucket, True
+
+
+@kernel(allocates=False, forceinline=True)
+def _from_start(grid: Any, wave: Any, row: int, column: int) -> int:
+    """Return a lower bound on the cost from the start to a cell, as in A*."""
+    if not wave.directed:
+        return 0
+    rows = abs(row - wave.stop // grid.stride)
+    columns = abs(column - wave.stop % grid.stride)
+    return int(
+        STRAIGHT * max(rows, columns) + (DIAGONAL - STRAIGHT) * min(rows, columns)
+    )
 
 
 @kernel(allocates=False, forceinline=True)

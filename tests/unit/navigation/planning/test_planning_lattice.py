@@ -32,6 +32,7 @@ from navette.navigation.planning.traversal import EdgeTable
 COURSE = Footprint.from_flat(COURSE_FOOTPRINT)
 MOTIONS = Motions(step_m=0.3, reach_m=COURSE.circumscribed_radius)
 MARGIN = 0.15
+EVERYWHERE = 1 << 50  # units
 
 
 def plan(
@@ -50,7 +51,11 @@ def plan(
         distances=grid.distances,
         factors=grid.factors(),
         guide=guide_to(
-            grid.cost, [(spec.cell_of(goal.x, goal.y), 0)], table=grid.table
+            grid.cost,
+            [(spec.cell_of(goal.x, goal.y), 0)],
+            table=grid.table,
+            start=spec.cell_of(start.x, start.y),
+            beyond=EVERYWHERE,
         ),
         spec=spec,
         body=body.points,
@@ -130,7 +135,7 @@ def test_start_outside_is_refused() -> None:
     spec = empty_map(4, 4)[1]
     nothing = np.zeros(spec.shape, np.float32)
     cost = np.zeros(spec.shape, np.uint8)
-    guide = guide_to(cost, [((0, 0), 0)], table=EdgeTable())
+    guide = guide_to(cost, [((0, 0), 0)], table=EdgeTable(), start=(0, 0), beyond=0)
     world = LatticeWorld(
         nothing,
         np.ones(256, np.float32),
