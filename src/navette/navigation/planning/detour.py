@@ -35,6 +35,9 @@ _FINE_M = 0.05
 # Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
+# A detour leads back to the route this far behind a tight place, if as much is left of
+# it; the deviation from its pose there.
+_BEHIND_M, _REJOIN_M = 15.0, 0.1
 # How much longer than the cheapest the ways are whose cells have their cost to go, in
 # metres driven. A search that met other cells is repeated with longer ones.
 _BEYOND_M, _BEYOND_GROWTH = 5.0, 4.0
@@ -92,6 +95,47 @@ class DetourPlanner:
         """Plan poses for the body; ``route`` is the grid's, which does not fit."""
         if not self.params.turns_in_place:
             return self._plan_steered(start, target, route)
+        return self._plan_back(start, route) or self._plan_to(start, target, route)
+
+    def _plan_back(self, start: Pose2, route: Poses | None) -> DetourResult | None:
+        """Plan back to a long route, behind its tight places; None if that fails.
+
+        The search would find a way of a hundred metres otherwise, of which the route
+        replaces all but the first.
+        """
+        rejoins = None if route is None else self._far_behind(route)
+        if route is None or rejoins is None:
+            return None
+        x, y, yaw = route[rejoins].tolist()
+        there = Target(x, y, yaw, _REJOIN_M)
+        found = self._plan_to(start, there, route[: rejoins + 1])
+        if found.poses is None:
+            return None
+        poses = joined(found.poses, route[rejoins:])
+        fits = check_path(poses, self.grid, self.body).fits
+        return DetourResult(poses, found.expansions, False) if fits else None
+
+    def _far_behind(self, route: Poses) -> int | None:
+        """Return a pose of the route far behind the first tight place and fairly wide.
+
+        None: the rest of the route is short, or does not fit.
+        """
+        bad = check_path(route, self.grid, self.body).first_bad
+        if bad is None:
+            return None
+        along = np.concatenate([[0.0], np.cumsum(path_shape.lengths(route))])
+        far = (along >= along[bad] + _BEHIND_M) & (along <= along[-1] - _BEHIND_M)
+        wide = np.flatnonzero(far & self._has_room(route))
+        if not len(wide):
+            return None
+        rejoins = int(wide[0])
+        fits = check_path(route[rejoins:], self.grid, self.body).fits
+        return rejoins if fits else None
+
+    def _plan_to(
+        self, start: Pose2, target: Target, route: Poses | None
+    ) -> DetourResult:
+        """Plan to the target; the route leads there, but does not fit."""
         effort = 0
         for beginning in (self._usable_beginning(route), _poses(start)):
             if not len(beginning):

@@ -1,16 +1,26 @@
 """Headings of the search for detours."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from planning_worlds import empty_map
+from planning_worlds import empty_map, fill
 
 from navette.geometry import Pose2
-from navette.navigation.planning import NewMap, Planner, PlannerParams
+from navette.navigation.planning import (
+    Goal,
+    NewMap,
+    Outcome,
+    Planner,
+    PlannerParams,
+)
 from navette.navigation.planning.detour import DetourPlanner
+from navette.navigation.planning.footprint_check import check_path
+from navette.navigation.planning.path_shape import lengths
 from navette.navigation.planning.route import GridRouter
 
+FOOTPRINT = (-0.25, -0.2, 0.25, -0.2, 0.25, 0.2, -0.25, 0.2)
 PARAMS = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
 
 
@@ -43,3 +53,26 @@ def test_where_there_is_room_the_search_begins_with_the_robots_heading() -> None
     route = detour.router.route(detour.grid, detour.body, Pose2(1, 3, 0), (5, 3))
     start = np.array([[1.0, 3.0, -0.14]])
     assert detour._aligned(start, route) is start
+
+
+def test_far_from_the_goal_a_detour_leads_back_to_the_route(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It costs no more than the way of a search up to the goal."""
+    occupancy, spec = empty_map(60, 20, 0.05)
+    # A dead end behind the robot's back, too narrow to turn in.
+    fill(occupancy, spec, (2.5, 5.0), (9.55, 9.6))
+    fill(occupancy, spec, (2.5, 5.0), (10.4, 10.45))
+    fill(occupancy, spec, (4.55, 4.6), (9.55, 10.45))
+    planner = Planner(replace(PARAMS, footprint_m=FOOTPRINT))
+    planner.set_map(NewMap(occupancy, spec))
+    start, goal = Pose2(4.0, 10.0, 0.0), Goal(56.0, 10.0)
+    near = planner.plan(start, goal)
+    monkeypatch.setattr(DetourPlanner, "_plan_back", lambda *_: None)
+    whole = planner.plan(start, goal)
+    assert near.outcome is whole.outcome is Outcome.OK
+    assert near.cost <= whole.cost
+    assert not np.array_equal(near.poses, whole.poses)
+    assert lengths(near.poses).max() < 0.2
+    assert check_path(near.poses, planner.grid(), planner.body).fits
+    assert math.dist(near.poses[-1, :2], (goal.x, goal.y)) < 0.1
