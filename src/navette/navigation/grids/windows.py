@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.geometry import Pose2
 from navette.navigation.grids.spec import UNKNOWN, GridFrame, GridSpec, grid_frame
 
 
@@ -63,6 +64,12 @@ class CellWindow(NamedTuple):
             slice(self.first_row, self.last_row),
             slice(self.first_column, self.last_column),
         )
+
+    def spec_in(self, spec: GridSpec) -> GridSpec:
+        """Return the geometry of the window in a grid."""
+        x, y = self.first_column * spec.resolution, self.first_row * spec.resolution
+        height, width = self.shape
+        return GridSpec(spec.resolution, width, height, spec.origin @ Pose2(x, y, 0.0))
 
     @property
     def is_empty(self) -> bool:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.grids import (
+    CellWindow,
     DistanceGrid,
     DistanceLevels,
     GridSpec,
@@ -45,6 +46,7 @@ from navette.navigation.planning.lattice_kernels import (
 from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.traversal import STRAIGHT
 
+_UNSEEN_REACH_M = 10.0  # around the start, for distances to unseen cells
 _LARGE_BYTES = 1 << 20  # a search reaches few bins of a map
 
 
@@ -129,7 +131,7 @@ def search(
     tree = _new_tree(world.spec, motions, max_expansions)
     per_metre = STRAIGHT / world.spec.resolution
     node, expanded = grow(
-        _scene(world),
+        _scene(world, start),
         _move_table(motions, per_metre),
         tree,
         (float(start.x), float(start.y), float(start.yaw)),
@@ -142,21 +144,23 @@ def search(
     return LatticeResult(_retrace(tree, node, start.yaw, motions), expanded, False)
 
 
-def _scene(world: LatticeWorld) -> LatticeScene:
-    frame = grid_frame(world.spec)
-    unseen_m = level_metres(world.spec.resolution, 2 * world.outline.radius_m)
+def _scene(world: LatticeWorld, start: Pose2) -> LatticeScene:
+    spec = world.spec
+    # Only the exact check covers what is farther away.
+    reach = math.ceil(_UNSEEN_REACH_M / spec.resolution)
+    near = CellWindow.around(spec, np.array([(start.x, start.y)]), reach)
+    unseen_m = level_metres(spec.resolution, 2 * world.outline.radius_m)
+    levels = distance_levels(world.unseen[near.slices], unseen_m)
     return LatticeScene(
-        DistanceGrid(world.distances, frame, float(world.outside_m)),
+        DistanceGrid(world.distances, grid_frame(spec), float(world.outside_m)),
         world.factors,
         world.guide,
         make_body(world.body),
         world.obstacles,
         world.outline,
-        make_obstacles(world.unseen, world.spec),
+        make_obstacles(world.unseen, spec),
         DistanceGrid(
-            DistanceLevels(distance_levels(world.unseen, unseen_m), unseen_m),
-            frame,
-            float(world.outside_m),
+            DistanceLevels(levels, unseen_m), grid_frame(near.spec_in(spec)), 0.0
         ),
         float(world.margin_m),
         float(world.comfort_m),

@@ -11,6 +11,7 @@ from navette.navigation.grids import (
     FREE,
     LETHAL,
     UNKNOWN,
+    CellWindow,
     GridSpec,
     PlanarScan,
     accumulate,
@@ -116,11 +117,8 @@ def add_scan(
     low, high = _cells_around(spec, ends)
     if (low >= high).any():
         return
-    window = field[low[0] : high[0], low[1] : high[1]]
-    corner = Pose2(low[1] * spec.resolution, low[0] * spec.resolution, 0.0)
-    part = GridSpec(
-        spec.resolution, window.shape[1], window.shape[0], spec.origin @ corner
-    )
+    there = CellWindow(*map(int, (low[0], high[0], low[1], high[1])))
+    window, part = field[there.slices], there.spec_in(spec)
     if not part.contains(*part.cell_of(sensor.x, sensor.y)):
         return
     cells = np.full(part.shape, UNKNOWN, np.int8)
