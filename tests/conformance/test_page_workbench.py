@@ -192,6 +192,19 @@ def test_space_stops_wherever_the_focus_is(person: Person) -> None:
 
 
 @pytest.mark.slow
+@part("stop", *BROWSERS)
+def test_nothing_that_is_open_covers_stop(person: Person) -> None:
+    seen = person.seen()
+    cards = {"shortcuts", "layout", "theme", "goal", "info", "waypoints"}
+    for name in ("desktop", "laptop", "phone", "sheet", "landscape"):
+        is_phone = name not in ("desktop", "laptop")
+        assert set(seen["opened"][name]) == cards | (set() if is_phone else {"panels"})
+        assert {
+            card: above for card, above in seen["above"][name].items() if above
+        } == {}
+
+
+@pytest.mark.slow
 @part("files", *BROWSERS)
 def test_files_are_saved_and_loaded_and_refusals_have_a_reason(person: Person) -> None:
     seen = person.seen()

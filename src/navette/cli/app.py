@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 USAGE_ERROR = 2
 NO_METHODS = MethodOptions()
+RECORDING = "Recording"
+MAPS = "Maps"
 
 World = Annotated[
     str,
@@ -91,20 +93,28 @@ Speed = Annotated[
     ),
 ]
 Seed = Annotated[
-    int, Option(help="Seed of all noise. The same seed gives the same run.")
+    int,
+    Option(metavar="N", help="Seed of all noise. The same seed gives the same run."),
 ]
 Record = Annotated[
     Path | None,
     Option(
         metavar="FILE.mcap",
         help="Record all topics except raw images to a file.",
+        panel=RECORDING,
     ),
 ]
 RecordImages = Annotated[
-    bool, Option("--record-images", help="Also record raw images.")
+    bool,
+    Option("--record-images", help="Also record raw images.", panel=RECORDING),
 ]
 Overwrite = Annotated[
-    bool, Option("--overwrite", help="Replace an existing recording of that name.")
+    bool,
+    Option(
+        "--overwrite",
+        help="Replace an existing recording of that name.",
+        panel=RECORDING,
+    ),
 ]
 ParamsFile = Annotated[
     list[Path] | None,
@@ -128,6 +138,7 @@ Map = Annotated[
         metavar="FILE.yaml",
         help="Plan on this known map, in ROS's format; what the sensors see changes it."
         " Default: the world is unknown.",
+        panel=MAPS,
     ),
 ]
 Keepout = Annotated[
@@ -135,6 +146,7 @@ Keepout = Annotated[
     Option(
         metavar="FILE.yaml",
         help="Keep out of the occupied cells of this mask, in ROS's map format.",
+        panel=MAPS,
     ),
 ]
 SpeedZones = Annotated[
@@ -143,6 +155,7 @@ SpeedZones = Annotated[
         metavar="FILE.yaml",
         help="Slow down in the dark cells of this mask, in ROS's map format (mode:"
         " scale): black means 1 %, white full speed.",
+        panel=MAPS,
     ),
 ]
 MaxTime = Annotated[

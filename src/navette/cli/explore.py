@@ -141,13 +141,13 @@ class _Screen:
 
 def _explore_simulated(screen: _Screen, options: Any, *, as_json: bool) -> int:
     from navette.cli.interruption import sigterm_as_interrupt
+    from navette.cli.running import start_simulation
+    from navette.cli.status import StatusScreen
 
-    with screen.console.status("starting", spinner="dots"):
-        from navette.cli.running import make_simulation
+    simulation = start_simulation(options, StatusScreen(options))
+    try:
         from navette.navigation.stack.exploring import add_explorer
 
-        simulation = make_simulation(options)
-    try:
         node = add_explorer(simulation)
         node.on_goal = screen.on_goal
         if simulation.viewer is not None:

@@ -12,8 +12,8 @@ def print_beside(console: Console, head: Text, text: Text) -> None:
 
     In a pipe, the text is one line of any length.
     """
-    if not console.is_terminal:
-        console.print(head + text, soft_wrap=True)
+    if not head or not console.is_terminal:
+        console.print(head + text, soft_wrap=not console.is_terminal)
         return
     line = Table.grid()
     line.add_column(no_wrap=True)

@@ -3,13 +3,19 @@
 import inspect
 
 import click
-from rich.console import Console, RenderableType
+from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
 from navette.cli.options import PanelOption
+
+# Columns that names may take beside their text; the text of a longer one is below it.
+_BESIDE = 32
+
+Row = tuple[Text, Text]
+"""A name with what follows it, and its text."""
 
 
 def help_page(command: click.Command, ctx: click.Context) -> str:
@@ -31,11 +37,9 @@ def help_page(command: click.Command, ctx: click.Context) -> str:
     return capture.get().rstrip("\n")
 
 
-def _panels(
-    command: click.Command, ctx: click.Context
-) -> dict[str, list[list[RenderableType]]]:
+def _panels(command: click.Command, ctx: click.Context) -> dict[str, list[Row]]:
     """Rows by the heading of their panel."""
-    panels: dict[str, list[list[RenderableType]]] = {"Arguments": [], "Options": []}
+    panels: dict[str, list[Row]] = {"Arguments": [], "Options": []}
     for param in command.get_params(ctx):
         if isinstance(param, click.Argument):
             panels["Arguments"].append(_argument_row(param, ctx))
@@ -47,19 +51,19 @@ def _panels(
         for name, each in command.commands.items():
             title = getattr(each, "panel", "Commands")
             label = Text(name.ljust(width), style="bold cyan")
-            row: list[RenderableType] = [label, each.get_short_help_str(limit=200)]
-            panels.setdefault(title, []).append(row)
+            text = Text.from_markup(each.get_short_help_str(limit=200))
+            panels.setdefault(title, []).append((label, text))
     return {title: rows for title, rows in panels.items() if rows}
 
 
-def _argument_row(param: click.Argument, ctx: click.Context) -> list[RenderableType]:
+def _argument_row(param: click.Argument, ctx: click.Context) -> Row:
     text = Text.from_markup(param.help or "")
     if param.required:
         text.append(" [required]", style="dim red")
-    return [Text(param.make_metavar(ctx), style="bold cyan"), text]
+    return Text(param.make_metavar(ctx), style="bold cyan"), text
 
 
-def _option_row(param: click.Option, ctx: click.Context) -> list[RenderableType]:
+def _option_row(param: click.Option, ctx: click.Context) -> Row:
     names = sorted(param.opts, key=len, reverse=True)
     long = [name for name in names if name.startswith("--")]
     short = [name for name in names if not name.startswith("--")]
@@ -72,19 +76,27 @@ def _option_row(param: click.Option, ctx: click.Context) -> list[RenderableType]
         text.append(" [required]", style="dim red")
     elif "default" in extra and not param.is_flag and extra["default"]:
         text.append(f" [default: {extra['default']}]", style="dim")
-    return [
-        Text(",".join(long), style="bold cyan"),
-        Text(",".join(short), style="bold green"),
-        Text(metavar, style="bold yellow"),
-        text,
-    ]
+    label = Text(", ").join(
+        [Text(name, style="bold cyan") for name in long]
+        + [Text(name, style="bold green") for name in short]
+    )
+    if metavar:
+        label.append(f" {metavar}", style="yellow")
+    return label, text
 
 
-def _panel(title: str, rows: list[list[RenderableType]]) -> Panel:
+def _panel(title: str, rows: list[Row]) -> Panel:
+    beside = [label.cell_len for label, _ in rows if label.cell_len <= _BESIDE]
+    column = max(beside, default=_BESIDE)
+    lines = Group(*(_lines(label, text, column) for label, text in rows))
+    return Panel(lines, title=title, title_align="left", border_style="dim")
+
+
+def _lines(label: Text, text: Text, column: int) -> RenderableType:
+    """Return a label with its text beside it, or below if the column is too narrow."""
+    is_long = label.cell_len > column
     table = Table.grid(padding=(0, 2, 0, 0), expand=True)
-    for _ in rows[0][:-1]:
-        table.add_column()
-    table.add_column(ratio=1)
-    for row in rows:
-        table.add_row(*row)
-    return Panel(table, title=title, title_align="left", border_style="dim")
+    table.add_column(width=column)
+    table.add_column(ratio=1, overflow="fold")
+    table.add_row(Text() if is_long else label, text)
+    return Group(label, table) if is_long else table

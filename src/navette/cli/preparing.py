@@ -1,8 +1,8 @@
-"""The very first start: kernels are compiled in two processes, and the page shows it.
+"""The very first start: kernels are compiled in processes, and the page shows it.
 
-A third process compiles those of SLAM; the start does not wait for it. Later starts
-load the machine code. Until the simulation opens its live view, a small server answers
-on the same port: the page, and ``/status.json``.
+One process compiles those of SLAM and exploration; a start that needs neither does not
+wait for it. Later starts load the machine code. Until the simulation opens its live
+view, a small server answers on the same port: the page, and ``/status.json``.
 """
 
 import atexit
@@ -13,20 +13,19 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
-import navette
 from navette.errors import InvalidValueError
-from navette.files.kernels import are_prepared, note_prepared, stored_kernels
+from navette.files.kernels import are_prepared, stored_kernels
+from navette.navigation.stack.kernel_part import LATER, LOCATING, PARTS, mark_of
 from navette.navigation.stack.options import RunOptions
 from navette.runtime import Stopwatch
 from navette.viewer.listening import listen
 
-_PARTS = ("planning", "driving")
-# Compiled behind these: it is not needed to drive by the simulator's pose.
-_LATER = "locating"
+# What the progress calls each part.
+_SUBJECTS = {"planning": "planner", "driving": "drive", LOCATING: "SLAM"}
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _PERIOD_S = 0.2
 _END_S = 2.0
@@ -35,14 +34,29 @@ _END_S = 2.0
 class Preparation:
     """Progress of the first start, as the page and the terminal show it."""
 
-    def __init__(self) -> None:
+    def __init__(self, parts: Sequence[str]) -> None:
+        self._parts = parts
         self._stopwatch = Stopwatch()
         self._stored = stored_kernels()
         self.kernels = 0
 
-    def count(self) -> None:
-        """Count the kernels that have been stored since the beginning."""
+    def update(self, parts: Sequence[str]) -> None:
+        """Count the kernels stored since the beginning; ``parts`` are unfinished."""
+        self._parts = parts
         self.kernels = max(0, stored_kernels() - self._stored)
+
+    @property
+    def subjects(self) -> str:
+        """Return what is being compiled: "planner and SLAM"."""
+        *others, last = (_SUBJECTS[part] for part in self._parts)
+        return f"{', '.join(others)} and {last}" if others else last
+
+    @property
+    def text(self) -> str:
+        return (
+            f"compiling kernels of {self.subjects}: "
+            f"{self.kernels} done, {self.seconds:.0f} s"
+        )
 
     @property
     def seconds(self) -> float:
@@ -52,7 +66,7 @@ class Preparation:
         """Return the content of ``/status.json``."""
         status = {
             "state": "preparing",
-            "what": "compiling kernels, only at the very first start",
+            "what": f"compiling kernels of {self.subjects}, once",
             "kernels": self.kernels,
             "seconds": round(self.seconds, 1),
         }
@@ -67,35 +81,49 @@ def prepare(
     ``announce`` gets lines that stay, ``show`` the progress several times a second. A
     failure is not one of the run: the simulation compiles what is missing.
     """
-    if are_prepared(navette.__version__):
+    parts = [part for part in _needed(options) if not are_prepared(mark_of(part))]
+    if not parts:
         return
-    progress = Preparation()
+    progress = Preparation(parts)
     with _page(options, progress) as url:
         where = f"; the live view {url} opens already" if url else ""
-        announce(f"first start: compiling kernels, up to a minute, once{where}")
-        if _compile(progress, show):
-            note_prepared(navette.__version__)
+        announce(
+            f"first start: compiling kernels of {progress.subjects}, "
+            f"up to a minute, once{where}"
+        )
+        _compile(parts, progress, show)
         announce(f"{progress.kernels} kernels compiled in {progress.seconds:.1f} s")
 
 
-def _compile(progress: Preparation, show: Callable[[str], None]) -> bool:
-    """Compile in two processes; return whether both succeeded."""
+def _needed(options: RunOptions) -> list[str]:
+    """Return the parts whose kernels the run calls."""
+    locates = options.methods.get("localization", "").startswith("slam")
+    is_needed = locates or options.verb == "explore"
+    return [part for part in PARTS if part != LOCATING or is_needed]
+
+
+def _compile(
+    parts: Sequence[str], progress: Preparation, show: Callable[[str], None]
+) -> None:
+    """Compile parts at once, and show the progress until all have ended."""
     with contextlib.ExitStack() as ends:
-        later = _started(_LATER, "later")
         unless_done = ends.enter_context(contextlib.ExitStack())
-        unless_done.callback(_end, later)
-        processes = []
-        for part in _PARTS:
-            process = _started(part)
+        for part in PARTS:
+            if part not in parts and not are_prepared(mark_of(part)):
+                later = _started(part, LATER)
+                unless_done.callback(_end, later)
+                atexit.register(_end, later)
+        processes = {part: _started(part) for part in parts}
+        for process in processes.values():
             ends.callback(_end, process)
-            processes.append(process)
-        for process in processes:
-            while not _has_ended(process):
-                progress.count()
-                show(f"compiled {progress.kernels} kernels, {progress.seconds:.0f} s")
+        while processes:
+            progress.update([*processes])
+            show(progress.text)
+            _wait(next(iter(processes.values())))
+            processes = {
+                k: each for k, each in processes.items() if each.poll() is None
+            }
         unless_done.pop_all()
-        atexit.register(_end, later)
-        return all(process.returncode == 0 for process in processes)
 
 
 def _started(*part: str) -> "subprocess.Popen[bytes]":
@@ -107,13 +135,10 @@ def _started(*part: str) -> "subprocess.Popen[bytes]":
     )
 
 
-def _has_ended(process: "subprocess.Popen[bytes]") -> bool:
-    """Return whether a process has ended, after a while at most."""
-    try:
+def _wait(process: "subprocess.Popen[bytes]") -> None:
+    """Wait until a process ends, for a while at most."""
+    with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(_PERIOD_S)
-    except subprocess.TimeoutExpired:
-        return False
-    return True
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

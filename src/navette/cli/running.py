@@ -26,12 +26,7 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
     interrupted before its last goal.
     """
     screen = StatusScreen(options)
-    with screen.starting():
-        # Imported here: it imports Numba.
-        from navette.cli.preparing import prepare
-
-        prepare(options, screen.show_line, screen.show_progress)
-        simulation = make_simulation(options, screen.on_change)
+    simulation = start_simulation(options, screen, screen.on_change)
     collect()
     try:
         return _drive(simulation, screen, as_json=as_json)
@@ -39,9 +34,22 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
         simulation.close()
 
 
-def make_simulation(
+def start_simulation(
     options: RunOptions,
+    screen: StatusScreen,
     on_change: Callable[["RunProgress"], None] = lambda progress: None,
+) -> "Simulation":
+    """Return the simulation of the options; ``screen`` shows how far the start is."""
+    with screen.starting():
+        # Imported here: it imports Numba.
+        from navette.cli.preparing import prepare
+
+        prepare(options, screen.show_line, screen.show_progress)
+        return _make_simulation(options, on_change)
+
+
+def _make_simulation(
+    options: RunOptions, on_change: Callable[["RunProgress"], None]
 ) -> "Simulation":
     """Return the simulation of the options: own nodes, too."""
     # Imported here: the first import compiles the kernels.
@@ -52,11 +60,7 @@ def make_simulation(
         from navette.ros2.names.node_classes import node_makers
 
         makers = node_makers(options.replacements)
-    return Simulation(
-        options,
-        on_change=on_change,
-        replacements=makers,
-    )
+    return Simulation(options, on_change=on_change, replacements=makers)
 
 
 def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> int:

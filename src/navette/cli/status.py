@@ -55,7 +55,7 @@ class StatusScreen:
 
     def show_line(self, text: str) -> None:
         """Print what is being done before the run."""
-        self._console.print(Text(text), soft_wrap=True)
+        print_beside(self._console, Text(), Text(text))
 
     def show_progress(self, text: str) -> None:
         """Show how far that is: beside the spinner, or in lines every few seconds."""

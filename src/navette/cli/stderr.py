@@ -3,11 +3,11 @@
 import os
 import shutil
 import sys
-import textwrap
 from typing import Any
 
 import click
 
+from navette.files import terminal_lines
 from navette.files.untrusted.escaping import escaped
 
 
@@ -32,19 +32,5 @@ def _print(text: str, **style: Any) -> None:
 
 
 def filled(line: str, indent: int = 2) -> str:
-    """Wrap a line at spaces to the terminal's width; long words are not broken.
-
-    Args:
-        indent: columns before the second and further lines.
-    """
-    width = shutil.get_terminal_size().columns
-    if len(line) <= width:
-        return line
-    return textwrap.fill(
-        line,
-        width,
-        subsequent_indent=" " * indent,
-        break_long_words=False,
-        break_on_hyphens=False,
-        replace_whitespace=False,
-    )
+    """Wrap a line at spaces to the terminal's width."""
+    return terminal_lines.filled(line, shutil.get_terminal_size().columns, indent)

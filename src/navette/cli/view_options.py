@@ -8,6 +8,8 @@ from navette.cli.options import Option
 if TYPE_CHECKING:
     from navette.navigation.stack import RunOptions
 
+PANEL = "Live view"
+
 
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:
@@ -20,6 +22,7 @@ class ViewOptions:
             max=65535,
             metavar="PORT",
             help="Port of the live view; 0 selects a free port.",
+            panel=PANEL,
         ),
     ] = 8765
     host: Annotated[
@@ -28,6 +31,7 @@ class ViewOptions:
             metavar="ADDRESS",
             help="Address of the live view. 0.0.0.0 lets other machines connect; they"
             " need the token, and the keys of NAVETTE_SECURITY encrypt the connection.",
+            panel=PANEL,
         ),
     ] = "127.0.0.1"
     unencrypted: Annotated[
@@ -35,6 +39,7 @@ class ViewOptions:
         Option(
             "--unencrypted",
             help="With --host: connect other machines without encryption.",
+            panel=PANEL,
         ),
     ] = False
     origin: Annotated[
@@ -44,6 +49,7 @@ class ViewOptions:
             metavar="ORIGIN",
             help="Also accept web pages of this origin, such as file:// for the"
             " Foxglove desktop app. Repeat for several.",
+            panel=PANEL,
         ),
     ] = None
     share: Annotated[
@@ -53,6 +59,7 @@ class ViewOptions:
             help="Open the run to all programs of this machine, or of the network that"
             " ROS_DOMAIN_ID and NAVETTE_ROUTER select. Default: only your own programs"
             " can join.",
+            panel=PANEL,
         ),
     ] = False
 

@@ -278,15 +278,17 @@ def stored_kernels() -> int:
     return 0 if folder is None else sum(1 for _ in folder.glob(f"*{_SUFFIX}"))
 
 
-def are_prepared(version: str) -> bool:
-    """Return whether :func:`note_prepared` was called for a version of Navette.
+def are_prepared(name: str) -> bool:
+    """Return whether :func:`note_prepared` was called for kernels of this name.
+
+    The name contains the version of Navette.
 
     True also where nothing can be stored, and where the package contains them.
     """
     archive = package_archive()
     if archive is not None and archive.is_complete():
         return True
-    mark = _mark(version)
+    mark = _mark(name)
     if mark is None:
         return True
     try:
@@ -296,9 +298,9 @@ def are_prepared(version: str) -> bool:
     return True
 
 
-def note_prepared(version: str) -> None:
-    """Note that the kernels of a version have been compiled and stored."""
-    mark = _mark(version)
+def note_prepared(name: str) -> None:
+    """Note that the kernels of this name have been compiled and stored."""
+    mark = _mark(name)
     if mark is not None:
         try:
             mark.touch()
@@ -306,11 +308,11 @@ def note_prepared(version: str) -> None:
             _log_once(f"cannot note the compiled kernels: {error.strerror}")
 
 
-def _mark(version: str) -> Path | None:
-    """Return the file that exists if the kernels of a version are stored."""
+def _mark(name: str) -> Path | None:
+    """Return the file that exists if the kernels of a name are stored."""
     folder = _folder()
     config: Any = numba.config
     if folder is None or config.DISABLE_JIT:
         return None
     python = sys.implementation.cache_tag
-    return folder / f"navette-{version}-numba-{numba.__version__}-{python}.prepared"
+    return folder / f"navette-{name}-numba-{numba.__version__}-{python}.prepared"

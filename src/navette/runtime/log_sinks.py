@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TextIO
 
 from navette.errors import FileFormatError
+from navette.files.terminal_lines import filled
 from navette.files.untrusted.escaping import escaped_but_coloured
 from navette.runtime.log import LogRecord
 from navette.runtime.log_levels import LoggingSeverity
@@ -30,7 +31,9 @@ def format_record(record: LogRecord) -> str:
 
 
 class ConsoleSink:
-    """Sink that writes to standard error, with colours on a terminal.
+    """Sink that writes to standard error, on a terminal with colours and wrapped lines.
+
+    In a pipe each record is one line, except for newlines of its message.
 
     Args:
         stream: replaces standard error.
@@ -51,12 +54,26 @@ class ConsoleSink:
             return
         # sys.stderr is read here because programs and tests replace it.
         stream = self._stream or sys.stderr
-        line = format_record(record)
-        colour = _COLOURS.get(record.severity, "")
-        if colour and stream.isatty():
-            line = f"{colour}{line}{_RESET}"
-        stream.write(escaped_but_coloured(line) + "\n")
+        text = escaped_but_coloured(format_record(record))
+        if stream.isatty():
+            columns = _columns(stream)
+            text = "\n".join(filled(line, columns) for line in text.split("\n"))
+            colour = _COLOURS.get(record.severity, "")
+            text = f"{colour}{text}{_RESET}" if colour else text
+        stream.write(text + "\n")
         stream.flush()
+
+
+def _columns(stream: TextIO) -> int:
+    """Return the terminal's width.
+
+    Unlimited for a pseudo-terminal without a size: a program reads its lines, as
+    launch does with ``emulate_tty``.
+    """
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or sys.maxsize
+    except OSError:
+        return sys.maxsize
 
 
 class FileSink:

@@ -1,8 +1,8 @@
 // A person at the page of `navette demo`, in parts: goals (also with a heading), panels and
 // run control, sizes and themes, a thumb on the stick, a page that hangs, keys in panels,
-// files that are saved and loaded, a server that ends and returns.
+// Stop while something else is open, files that are saved and loaded, a server that ends and returns.
 //
-//   node workbench.mjs goals|panels|sizes|access|touch|hang|keys|files|restart|offline|measure http://127.0.0.1:PORT BROWSER FOLDER
+//   node workbench.mjs goals|panels|sizes|access|touch|hang|keys|stop|files|restart|offline|measure http://127.0.0.1:PORT BROWSER FOLDER
 //
 // Prints what the page displays, and what axe finds; the parts `restart` and `offline` print
 // "end" or "start" for the server and wait for a line on their input.
@@ -285,8 +285,91 @@ async function keys() {
   await page.keyboard.press("m");
   seen.tool = await page.evaluate(() => navette.tools.chosen.key);
   await page.keyboard.press("?");
-  await page.locator("dialog[open]").waitFor();
+  await page.getByRole("dialog", { name: "Keyboard and mouse" }).waitFor();
   seen.axe.help = await serious(page);
+}
+
+async function stop() {
+  // Whatever is open, Stop looks as before, nothing lies above it, and a click and Space stop.
+  const openByButton = (name) => async (page) => {
+    await page.getByRole("button", { name, exact: true }).first().click();
+    await page.locator(".popover:popover-open").waitFor();
+  };
+  const openers = {
+    shortcuts: openByButton("Shortcuts"),
+    panels: openByButton("Panels"),
+    layout: openByButton("Layout"),
+    theme: openByButton("Theme"),
+    goal: openByButton("Goal by coordinates"),
+    info: async (page) => {
+      const { x, y } = await page.locator("#operate").boundingBox();
+      await page.mouse.click(x - 12, y + 20, { button: "right" });
+      await page.locator(".info-card").waitFor();
+    },
+    waypoints: async (page) => {
+      await page.evaluate(() => {
+        for (let x = 0; x < 12; x++) navette.tools.waypoints.tap([x, 0]);
+        navette.tools.choose(navette.tools.waypoints);
+      });
+      await page.locator(".waypoint-card").waitFor();
+    },
+  };
+  seen.opened = {};
+  seen.above = {};
+  for (const [name, width, height, colorScheme, panel] of [
+    ["desktop", 1440, 900, "light"], ["laptop", 1024, 600, "dark"], ["phone", 360, 640, "light"], ["sheet", 360, 740, "dark", "log"], ["landscape", 740, 360, "light"],
+  ]) {
+    const page = await newPage({ viewport: { width, height }, colorScheme });
+    await until(page, () => navette.robot.driveTopic !== undefined && navette.scene.fixedFrame !== null);
+    if (panel) await page.evaluate((kind) => navette.open(kind), panel);
+    await page.waitForTimeout(500);
+    const isStopped = (wanted) => until(page, (is) => [navette.robot.isStopped, !document.querySelector("#release").hidden, document.body.classList.contains("stopped")].every((each) => each === is), wanted, 30_000);
+    const look = async () => {
+      const { x, y, width: long, height: high } = await page.locator("#stop").boundingBox();
+      const before = seen.problems.length;
+      const clip = { x: Math.ceil(x + high / 2), y: Math.ceil(y + 2), width: Math.floor(long - high), height: Math.floor(high - 4) };
+      const pixels = (await page.screenshot({ clip, animations: "disabled" })).toString("base64");
+      seen.problems.length = before; // see picture()
+      return pixels;
+    };
+    const above = () => page.evaluate(() => {
+      const { left, top, width: long, height: high } = document.querySelector("#stop").getBoundingClientRect();
+      const points = [.04, .2, .5, .8, .96].flatMap((across) => [.3, .5, .7].map((down) => [left + across * long, top + down * high]));
+      return points.map(([x, y]) => document.elementFromPoint(x, y)).filter((each) => each?.id !== "stop").map((each) => each?.className ?? "nothing");
+    });
+    /** Whether it looks so, after a while at most: cards are placed when they are open. */
+    const looks = async (wanted) => {
+      for (let tries = 0; tries < 10; tries++) {
+        if (await look() === wanted) return true;
+        await page.waitForTimeout(100);
+      }
+      return false;
+    };
+    await page.mouse.move(1, 1);
+    let asUsual = await look();
+    while (!await looks(asUsual)) asUsual = await look(); // the page is still laid out
+    for (const [what, open] of Object.entries(openers)) {
+      if (what === "panels" && width < 1000) continue; // a phone has tabs instead
+      await open(page);
+      await page.mouse.move(1, 1);
+      if (!await looks(asUsual)) seen.problems.push(`${name} ${what}: Stop looks different`);
+      (seen.above[name] ??= {})[what] = await above();
+      await page.locator("#stop").click({ timeout: 5_000 });
+      await isStopped(true);
+      await page.evaluate(() => navette.operator.release());
+      await isStopped(false);
+      if (!(await page.locator(".popover:popover-open, .info-card, .waypoint-card").first().isVisible())) await open(page);
+      await page.keyboard.press(" ");
+      await isStopped(true);
+      await page.evaluate(() => navette.operator.release());
+      await isStopped(false);
+      await page.keyboard.press("Escape");
+      await page.locator(".popover:popover-open").waitFor({ state: "detached" });
+      await page.evaluate(() => navette.tools.choose(navette.tools.all[0]));
+      (seen.opened[name] ??= []).push(what);
+    }
+    await page.context().close();
+  }
 }
 
 async function files() {
@@ -386,7 +469,7 @@ async function measure() {
 }
 
 try {
-  await { goals, panels, sizes, access, touch, hang, keys, files, restart, offline, measure }[part]();
+  await { goals, panels, sizes, access, touch, hang, keys, stop, files, restart, offline, measure }[part]();
   console.log(JSON.stringify(seen));
 } finally {
   await browser.close();

@@ -11,6 +11,7 @@ import pytest
 from free_ports import free_port
 from navette.cli import preparing
 from navette.files import kernels
+from navette.navigation.stack.kernel_part import mark_of
 from navette.navigation.stack.options import RunOptions
 
 
@@ -44,17 +45,21 @@ def test_the_page_and_its_status_are_served_until_the_simulation_takes_the_port(
     port = free_port()
     seen: list[dict[str, object]] = []
 
-    def compiled(progress: preparing.Preparation, show: object) -> bool:
+    def compiled(
+        parts: list[str], progress: preparing.Preparation, show: object
+    ) -> None:
         (empty_cache / "a.kernel").touch()
-        progress.count()
+        progress.update(parts)
         assert b"preparing" in get(port, "/")
         seen.append(json.loads(get(port, "/status.json")))
-        return True
+        for part in parts:
+            kernels.note_prepared(mark_of(part))
 
     monkeypatch.setattr(preparing, "_compile", compiled)
     lines: list[str] = []
     preparing.prepare(options(port), lines.append, lines.append)
     assert seen[0]["state"] == "preparing"
+    assert seen[0]["what"] == "compiling kernels of planner and drive, once"
     assert seen[0]["kernels"] == 1
     assert f"http://127.0.0.1:{port}" in lines[0]
     assert lines[-1].startswith("1 kernels compiled")
@@ -64,7 +69,60 @@ def test_the_page_and_its_status_are_served_until_the_simulation_takes_the_port(
     assert len(seen) == 1, "the second start compiles nothing"
 
 
-def test_processes_end_with_the_preparation(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
+    """Record the parts that are started, each as a process that ends at once."""
+    parts: list[tuple[str, ...]] = []
+    real = subprocess.Popen
+
+    def start(arguments: list[str], **kwargs: object) -> subprocess.Popen[bytes]:
+        part, *rest = arguments[3:]
+        parts.append((part, *rest))
+        if not rest:
+            kernels.note_prepared(mark_of(part))
+        return real([sys.executable, "-c", ""])
+
+    monkeypatch.setattr(subprocess, "Popen", start)
+    return parts
+
+
+def headless(**chosen: str) -> RunOptions:
+    return RunOptions(world="arena", headless=True, methods=chosen)
+
+
+def test_a_start_with_slam_waits_for_its_kernels_and_names_them(
+    empty_cache: Path, started: list[tuple[str, ...]]
+) -> None:
+    announced: list[str] = []
+    shown: list[str] = []
+    slam = headless(localization="slam+wheels")
+    preparing.prepare(slam, announced.append, shown.append)
+    assert started == [("planning",), ("driving",), ("locating",)]
+    assert "compiling kernels of planner, drive and SLAM, " in announced[0]
+    assert shown[0].startswith("compiling kernels of planner, drive and SLAM: 0 done, ")
+
+
+def test_a_start_by_the_true_pose_leaves_slam_to_the_background(
+    empty_cache: Path, started: list[tuple[str, ...]]
+) -> None:
+    announced: list[str] = []
+    preparing.prepare(headless(), announced.append, announced.append)
+    assert started == [("locating", "later"), ("planning",), ("driving",)]
+    assert "SLAM" not in announced[0]
+
+    # A later start that needs SLAM prepares only what is missing.
+    started.clear()
+    announced.clear()
+    preparing.prepare(headless(localization="slam"), announced.append, announced.append)
+    assert started == [("locating",)]
+    assert (
+        announced[0] == "first start: compiling kernels of SLAM, up to a minute, once"
+    )
+
+
+def test_processes_end_with_the_preparation(
+    empty_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started: list[subprocess.Popen[bytes]] = []
     real = subprocess.Popen
 
@@ -78,7 +136,8 @@ def test_processes_end_with_the_preparation(monkeypatch: pytest.MonkeyPatch) -> 
     def interrupted(text: str) -> None:
         raise KeyboardInterrupt
 
+    parts = ["planning", "driving"]
     with pytest.raises(KeyboardInterrupt):
-        preparing._compile(preparing.Preparation(), interrupted)
+        preparing._compile(parts, preparing.Preparation(parts), interrupted)
     assert len(started) == 3
     assert all(process.poll() is not None for process in started)

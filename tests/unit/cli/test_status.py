@@ -202,6 +202,17 @@ def test_lines_are_wrapped_at_words_below_their_text() -> None:
     assert shown.getvalue() == f"done: {text}\n"
 
 
+@pytest.mark.parametrize(
+    "text", ["35 kernels compiled", "a line of more than 20 columns"]
+)
+def test_lines_without_a_head_start_at_the_margin(text: str) -> None:
+    shown = io.StringIO()
+    print_beside(Console(file=shown, width=20, force_terminal=True), Text(), Text(text))
+    lines = shown.getvalue().splitlines()
+    assert [line.lstrip() for line in lines] == lines
+    assert " ".join(map(str.strip, lines)) == text
+
+
 def test_a_line_breaks_between_its_parts() -> None:
     parts = [Text("0.50 m/s"), Text("→ /cmd_vel_teleop"), Text("EMERGENCY STOP")]
     assert in_rows(parts, 80).plain == "0.50 m/s   → /cmd_vel_teleop   EMERGENCY STOP"

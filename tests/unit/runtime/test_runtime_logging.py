@@ -1,8 +1,14 @@
 """Logging: levels, filters, console, file, /rosout, the algorithms' loggers."""
 
+import fcntl
 import io
 import logging
+import os
+import pty
 import re
+import struct
+import termios
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -140,6 +146,44 @@ def test_console_is_coloured_on_a_terminal_only() -> None:
     ConsoleSink(terminal)(record)
     assert plain.getvalue() == "[ERROR] [0.000000000] [n]: text\n"
     assert terminal.getvalue().startswith("\x1b[31m[ERROR]")
+
+
+def on_a_terminal(record: LogRecord, columns: int) -> list[str]:
+    """Return the lines that a pseudo-terminal of a width receives."""
+    controller, terminal = pty.openpty()
+    with (
+        os.fdopen(controller, "rb", buffering=0) as received,
+        os.fdopen(terminal, "w") as stream,
+    ):
+        size = struct.pack("4H", 24, columns, 0, 0)
+        fcntl.ioctl(stream.fileno(), termios.TIOCSWINSZ, size)
+        ConsoleSink(stream)(record)
+        return received.read(4096).decode().splitlines()
+
+
+LONG = LogRecord(
+    0, LoggingSeverity.INFO, "n", "the planner has found no path\n a table"
+)
+
+
+def test_a_terminal_gets_lines_that_end_between_words() -> None:
+    assert on_a_terminal(LONG, 40) == [
+        "[INFO] [0.000000000] [n]: the planner",
+        "  has found no path",
+        " a table",
+    ]
+    warning = replace(LONG, severity=LoggingSeverity.WARN)
+    first, *_, last = on_a_terminal(warning, 40)
+    assert first == "\x1b[33m[WARN] [0.000000000] [n]: the planner"
+    assert last == " a table\x1b[0m"
+
+
+def test_a_pipe_and_a_terminal_without_a_size_get_one_line_per_record() -> None:
+    lines = format_record(LONG).splitlines()
+    assert on_a_terminal(LONG, 0) == lines
+    piped = io.StringIO()
+    ConsoleSink(piped)(LONG)
+    assert piped.getvalue().splitlines() == lines
 
 
 def test_the_console_is_standard_error(capsys: pytest.CaptureFixture[str]) -> None:

@@ -59,9 +59,8 @@ export class App {
     this.scene.displays.onChange(() => this.#remember());
     this.scene.onChange(() => this.#remember());
     this.connection.on("notice", ({ level, text }) => this.view.answer(text, level === "error"));
-    const shortcuts = this.#shortcuts();
-    this.#header.actions.append(...this.#actions(shortcuts));
-    document.body.append(this.#header.element, this.#center, new PlaybackBar(this.connection).element, shortcuts.dialog);
+    this.#header.actions.append(...this.#actions());
+    document.body.append(this.#header.element, this.#center, new PlaybackBar(this.connection).element);
     this.#login();
   }
 
@@ -125,7 +124,7 @@ export class App {
     }, REMEMBER_MS);
   }
 
-  #actions(shortcuts: Shortcuts): HTMLElement[] {
+  #actions(): HTMLElement[] {
     const panels = popover("Panels", "plus", (close) => [
       h("h2", {}, "Open a panel"),
       ...panelKinds().map(({ id, title, icon: name, hint }) => menuItem(title, () => { close(); this.open(id); }, name, hint)),
@@ -133,8 +132,8 @@ export class App {
     const layouts = popover("Layout", "layout", (close) => this.#layoutMenu(close));
     const theme = popover("Theme", this.theme.isDark ? "moon" : "sun", (close) => [h("h2", {}, "Theme"), ...(["system", "light", "dark"] as const).map((choice) => this.#themeItem(choice, close))]);
     this.theme.onChange(() => theme.button.replaceChildren(icon(this.theme.isDark ? "moon" : "sun")));
-    const help = h("button", { class: "bare", "aria-label": "Shortcuts", title: "Shortcuts (?)", onclick: () => shortcuts.show() }, icon("help"));
-    return [panels.button, layouts.button, theme.button, help, panels.card, layouts.card, theme.card];
+    const all = [panels, layouts, theme, this.#shortcuts().list];
+    return [...all.map(({ button }) => button), ...all.map(({ card }) => card)];
   }
 
   #themeItem(choice: ThemeChoice, close: () => void): HTMLElement {

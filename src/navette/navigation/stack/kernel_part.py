@@ -2,7 +2,8 @@
 
     python -m navette.navigation.stack.kernel_part PART [later]
 
-The machine code is stored; the program that starts this process then loads it. PART is
+The machine code is stored and the part noted as prepared; the program that starts this
+process then loads it. PART is
 ``planning``, ``locating`` for SLAM and exploration, or ``driving`` for all the rest and
 a short drive. ``later`` leaves the processor to other processes.
 """
@@ -13,12 +14,20 @@ from collections.abc import Callable
 
 import numpy as np
 
+import navette
+from navette.files.kernels import note_prepared
 from navette.navigation.stack.options import RunOptions
 
-PARTS = ("planning", "driving", "locating")
+LOCATING = "locating"
+PARTS = ("planning", "driving", LOCATING)
 LATER = "later"
 # Simulated time after which the robot moves and every node has been called.
 _DRIVE_S = 3.0
+
+
+def mark_of(part: str) -> str:
+    """Return the name under which a part of this version is noted as prepared."""
+    return f"{navette.__version__}-{part}"
 
 
 def compile_planning() -> None:
@@ -92,3 +101,4 @@ if __name__ == "__main__":
     if sys.argv[2:] == [LATER] and hasattr(os, "nice"):
         os.nice(19)
     _COMPILE[sys.argv[1]]()
+    note_prepared(mark_of(sys.argv[1]))
