@@ -224,9 +224,13 @@ def _missed(summary: RunSummary) -> str:
     """Return the true distance from a goal that only the estimate reached."""
     if summary.missed_m is None:
         return ""
+    tolerance_m = summary.goal_tolerance_m
+    missed = f"{summary.missed_m:.2f}"
+    if float(missed) <= tolerance_m:
+        missed = f"{summary.missed_m:.4f}"
     return (
-        f"by the estimate only (truly up to {summary.missed_m:.2f} m away, "
-        f"tolerance {summary.goal_tolerance_m:g} m)"
+        f"by the estimate only (truly up to {missed} m away, "
+        f"tolerance {tolerance_m:g} m)"
     )
 
 

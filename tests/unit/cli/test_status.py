@@ -148,6 +148,8 @@ def test_a_goal_that_only_the_estimate_reached_is_marked() -> None:
         "tolerance 0.5 m), 0 contacts, pose error 5.51 m"
     )
     assert "estimate" not in reported(true_goal_distance_m=0.3)
+    line = reported(true_goal_distance_m=0.5021)
+    assert "(truly up to 0.5021 m away, tolerance 0.5 m)" in line
 
 
 def test_a_map_in_another_frame_gives_no_pose_error() -> None:
