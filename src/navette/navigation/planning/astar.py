@@ -63,13 +63,18 @@ _NOWHERE = np.zeros((1, 1), np.int64)
 
 @PLANNERS.register("a_star")
 class AStar:
-    """Search that keeps its working arrays between queries."""
+    """Search that keeps its working arrays between queries.
+
+    Attributes:
+        expanded: number of cells that all queries have expanded.
+    """
 
     def __init__(self) -> None:
         self._records = np.empty(0, np.int64)
         self._rimmed = np.empty((0, 0), np.uint8)
         self._pool = new_pool()
         self._stamp = 0
+        self.expanded = 0
 
     def search(
         self,
@@ -122,9 +127,10 @@ class AStar:
         ends = grid.index_of(start), grid.index_of(goal)
         bucket, done, most = -1, False, _BEFORE_LOOK
         while not done:
-            self._pool, bucket, done = _search(
+            self._pool, bucket, done, left = _search(
                 grid, query, queue, self._pool, bucket, most
             )
+            self.expanded += most - left
             if not done and is_cut_off(grid, ends[1], ends[0], most // _LOOK_SHARE):
                 return None
             most *= _LOOK_GROWTH
@@ -184,7 +190,7 @@ class _Query(NamedTuple):
 @kernel
 def _search(
     grid: Any, query: Any, queue: Any, pool: Any, bucket: Any, most: int
-) -> tuple[Any, int, bool]:
+) -> tuple[Any, int, bool, int]:
     """Lower ``best`` to the least cost of a path.
 
     Args:
@@ -193,7 +199,7 @@ def _search(
         most: number of cells to expand.
 
     Returns:
-        The pool, the bucket, and whether the search is done.
+        The pool, the bucket, whether the search is done, and how many cells may follow.
     """
     if bucket < 0:
         bucket = np.int64(_to_goal(query, query.start) >> queue.shift)
@@ -203,7 +209,7 @@ def _search(
     while not done and most > 0:
         pool = reserve(pool, queue, _NEIGHBOURS)
         bucket, done, most = _expand_while_room(grid, query, queue, pool, bucket, most)
-    return pool, bucket, done
+    return pool, bucket, done, most
 
 
 @kernel(allocates=False)

@@ -15,6 +15,7 @@ from navette.navigation.planning.plan import Plan, cost_of
 from navette.navigation.planning.planning_grid import PlanningGrid
 from navette.navigation.planning.prepared_map import PreparedMap
 from navette.navigation.planning.route import GridRouter
+from navette.navigation.planning.traversal import LETHAL
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,20 @@ class MarginPlanner:
     put_down_at: Pose2 | None
 
     def plan(
-        self, margin_m: float, start: Pose2, goal: Goal, *, max_expansions: int
+        self,
+        margin_m: float,
+        start: Pose2,
+        goal: Goal,
+        *,
+        max_expansions: int,
+        below_m: float = math.inf,
     ) -> Plan:
-        """Plan a path of which the body keeps a margin."""
+        """Plan a path of which the body keeps a margin.
+
+        A path that cannot cost less than ``below_m`` may not be found.
+        """
         grid = self.map.opened(margin_m, start)
-        route, why_not = self._route(grid, start, goal)
+        route, why_not = self._route(grid, start, goal, below_m)
         if route is None:
             return Plan(why_not)
         fitter = RouteFitter(self.params, grid, self.map.body, goal)
@@ -78,23 +88,27 @@ class MarginPlanner:
         return Plan(outcome, poses, cost, margin_m, expansions)
 
     def _route(
-        self, grid: PlanningGrid, start: Pose2, goal: Goal
+        self, grid: PlanningGrid, start: Pose2, goal: Goal, below_m: float
     ) -> tuple[Poses | None, Outcome]:
         """Return the grid's route to the goal or near it, or None and the reason."""
         body = self.map.body
-        route = self.router.route(grid, body, start, (goal.x, goal.y), goal.yaw)
+        route = self.router.route(
+            grid, body, start, (goal.x, goal.y), goal.yaw, below_m
+        )
         if route is not None:
             return route, Outcome.OK
-        cell = grid.cell_of(start.x, start.y)
+        cell, end_cell = (grid.cell_of(at.x, at.y) for at in (start, goal))
         assert cell is not None, "the start lies in the map"
+        assert end_cell is not None, "the goal lies in the map"
+        if below_m < math.inf and grid.cost[end_cell] != LETHAL:
+            return None, Outcome.NO_PATH
         reach_m = path_end_reach_m(self.params)
         near, outcome = nearest_reachable(grid, cell, (goal.x, goal.y), reach_m, body)
         if near is None:
             return None, outcome
         end = grid.spec.center_of(*near)
-        route = self.router.route(grid, body, start, end, goal.yaw)
-        assert route is not None, "the end was chosen among reachable cells"
-        return route, outcome
+        route = self.router.route(grid, body, start, end, goal.yaw, below_m)
+        return route, Outcome.NO_PATH if route is None else outcome
 
     def _detours(
         self, grid: PlanningGrid, start: Pose2, max_expansions: int

@@ -20,7 +20,7 @@ from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_progress import PathProgress
-from navette.navigation.planning.path_shape import Poses
+from navette.navigation.planning.path_shape import Poses, lengths
 from navette.navigation.planning.planner import Goal, Plan, Planner
 from navette.navigation.planning.progress_checker import ProgressChecker
 from navette.navigation.planning.received_map import NewMap
@@ -46,6 +46,9 @@ _BLOCKED_PERIOD_NS = 1_000_000_000
 # by so much, up to the most. What the controller measures differs by millimetres: it
 # would refuse the same path for ever.
 _BLOCKED_PLANS, _MORE_MARGIN_M, _MOST_MORE_M = 3, 0.01, 0.05
+# A plan that took a search of so many cells, tens of milliseconds, is replaced at most
+# with this period while what blocks it is this far ahead and seconds away.
+_MANY_CELLS, _FAR_PERIOD_NS, _FAR_M, _FAR_S = 500_000, 2_000_000_000, 5.0, 3.0
 # Within this distance of the path's end, every odometry is checked for arrival.
 _NEAR_END_M = 1.0
 
@@ -72,7 +75,7 @@ class Navigator:
         self._checker = ProgressChecker(params)
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
-        self._stepped_ns = self._compared_ns = 0
+        self._stepped_ns = self._compared_ns = self._planned_ns = 0
         self._blocked = False
         self._blocked_ns = -_BLOCKED_PERIOD_NS  # of the last plan because of it
         self._blocked_plans = 0  # since the robot last drove
@@ -287,7 +290,9 @@ class Navigator:
             or progress.off_path_m > self.params.deviation_m
             or (
                 changed
-                and (self._plans_freely(plan) or not self._still_valid(plan, progress))
+                and (
+                    self._plans_freely(plan) or self._is_blocked(plan, progress, robot)
+                )
             )
         ):
             self._replan(robot.pose, self._goal)
@@ -305,13 +310,25 @@ class Navigator:
         with headings for nearly every plan, a third of the CPU with every map.
         """
         searched = plan.expansions > 0 and not self.params.turns_in_place
-        return not self._set_out and not searched
+        return not (self._set_out or searched or plan.cells > _MANY_CELLS)
 
-    def _still_valid(self, plan: Plan, progress: PathProgress) -> bool:
-        """Return whether the body still fits along the rest of the path."""
+    def _is_blocked(
+        self, plan: Plan, progress: PathProgress, robot: RobotMotion
+    ) -> bool:
+        """Return whether the body does not fit along the rest of the path any more.
+
+        If that is far ahead and plans take long, the next steps look again.
+        """
         margin = _VALID_SHARE * plan.margin_m
         grid = self.planner.grid()
-        return check_path(progress.ahead, grid, self.planner.body, margin).fits
+        bad = check_path(progress.ahead, grid, self.planner.body, margin).first_bad
+        if bad is None or plan.cells <= _MANY_CELLS:
+            return bad is not None
+        away_m = lengths(progress.ahead[: bad + 1]).sum()
+        is_far = away_m > max(_FAR_M, _FAR_S * abs(robot.speed_mps))
+        since_ns = self._stepped_ns - self._planned_ns
+        self._map_changed = is_far and 0 <= since_ns < _FAR_PERIOD_NS
+        return not self._map_changed
 
     def _switch_if_better(
         self, progress: PathProgress, here: Pose2, goal: Goal
@@ -344,6 +361,7 @@ class Navigator:
             plan = self.planner.plan(here, goal, exact_start=exact_start)
         self.planner.map.take_cost_fall()
         self._map_changed = False
+        self._planned_ns = self._stepped_ns
         if plan.outcome.has_path:
             self._accept(plan, here)
             return

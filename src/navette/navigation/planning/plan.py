@@ -21,6 +21,7 @@ class Plan:
         cost: cost of the path in metres of free driving forward.
         margin_m: clearance that the path keeps.
         expansions: poses expanded by the search with headings; 0 = not used.
+        cells: number of cells that A* expanded.
         fault: error of a user's method; empty without one.
     """
 
@@ -29,6 +30,7 @@ class Plan:
     cost: float = math.inf
     margin_m: float = math.nan
     expansions: int = 0
+    cells: int = 0
     fault: str = ""
 
 

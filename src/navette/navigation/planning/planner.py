@@ -137,7 +137,9 @@ class Planner:
             turn = self._plan_turn(start, goal)
             if turn is not None:
                 return turn
-            return self._plan_or_squeeze(start, goal, more_margin_m)
+            before = self.router.expanded
+            plan = self._plan_or_squeeze(start, goal, more_margin_m)
+            return replace(plan, cells=self.router.expanded - before)
         except MethodFaultError as error:
             return Plan(Outcome.METHOD_FAILED, fault=str(error))
 
@@ -218,9 +220,12 @@ class Planner:
         if plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M:
             return plan
         if tight < usual:
-            squeezed = planner.plan(tight, start, goal, max_expansions=quick)
-            worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
-            plan = squeezed if squeezed.outcome.has_path and worth else plan
+            worth = _SQUEEZE_SHARE * plan.cost
+            squeezed = planner.plan(
+                tight, start, goal, max_expansions=quick, below_m=worth
+            )
+            if squeezed.outcome.has_path and squeezed.cost < worth:
+                plan = squeezed
         if plan.outcome.has_path:
             return plan
         return TightPlanner(

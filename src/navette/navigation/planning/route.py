@@ -62,6 +62,11 @@ class GridRouter:
         other.params = params
         return other
 
+    @property
+    def expanded(self) -> int:
+        """Number of cells that A* has expanded for all routes."""
+        return 0 if self._a_star is None else self._a_star.expanded
+
     def route(
         self,
         grid: PlanningGrid,

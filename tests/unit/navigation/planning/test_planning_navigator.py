@@ -209,6 +209,28 @@ def refuse(drive: Drive, times: int) -> None:
         drive.steps(2)
 
 
+def test_where_plans_take_long_one_that_is_blocked_far_ahead_is_replaced_later(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("navette.navigation.planning.navigator._MANY_CELLS", -1)
+    drive = Drive(empty_map(30, 8)[0])
+    drive.spec = empty_map(30, 8)[1]
+    drive.navigator.set_map(NewMap(drive.occupancy, drive.spec))
+    drive.send(28, 4)
+    drive.steps(2)
+    planned_ns = drive.now_ns - PERIOD_NS
+    drive.change_map((15.0, 15.2), (3.0, 5.0))
+    while len(drive.published) == 1:
+        drive.step()
+    assert drive.now_ns - planned_ns == 2_000_000_000
+    x = drive.pose.x
+    assert x < 10.0
+    drive.change_map((x + 3.5, x + 3.7), (0.0, 8.0))
+    drive.change_map((x + 3.5, x + 3.7), (6.5, 8.0), 0)
+    drive.step()
+    assert len(drive.published) == 3, "near ahead: at once"
+
+
 def test_a_path_that_the_controller_refuses_is_replaced() -> None:
     """What the controller measures differs by millimetres from the map."""
     drive = blocked_before_a_door(other_way=True)
