@@ -25,10 +25,10 @@ from skimage.graph import MCP_Geometric
 
 from navette.geometry import Pose2
 from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.grids.received_map import MapPart, ReceivedMap
 from navette.navigation.planning import Goal, NewMap, Planner, PlannerParams, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.navigator import Navigator
-from navette.navigation.planning.received_map import MapPart, ReceivedMap
 from navette.navigation.planning.reports import RobotMotion
 from navette.navigation.planning.string_pulling import centers, pull
 from navette.navigation.planning.traversal import (

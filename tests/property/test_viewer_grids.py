@@ -53,9 +53,10 @@ class Publisher:
             data=part.ravel(),
         )
 
-    def replace(self, height: int) -> None:
+    def replace(self, height: int) -> OccupancyGridUpdate:
         self.stamp_s += 1
         self.cells = self._random.integers(-1, 101, (height, EDGE), np.int8)
+        return OccupancyGridUpdate(header=self._header())
 
     def grid(self) -> OccupancyGrid:
         info = MapMetaData(width=EDGE, height=len(self.cells), resolution=0.5)
@@ -164,7 +165,6 @@ def test_a_client_has_the_last_grid(depth: int, steps: list[str], seed: int) -> 
             publisher.change()
             publish(None)
         else:
-            publisher.replace(len(publisher.cells) + (step == "grow"))
-            publish(None)
+            publish(publisher.replace(len(publisher.cells) + (step == "grow")))
     assert page.cells is not None
     np.testing.assert_array_equal(page.cells, publisher.cells)

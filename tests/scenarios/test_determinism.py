@@ -5,6 +5,9 @@ from typing import Any
 
 import pytest
 
+from navette.msgs.geometry_msgs.msg import Twist
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+
 from .conftest import MakeSimulation
 from .test_amcl import map_file
 
@@ -43,6 +46,45 @@ def test_two_runs_with_one_seed_record_the_same_bytes(
     assert len(first) > 100_000
     assert record(simulate, tmp_path, "second", seed=7) == first
     assert record(simulate, tmp_path, "other", seed=8) != first
+
+
+PARTS_ONLY = """\
+map_memory:
+  ros__parameters:
+    always_send_full_map: false
+"""
+
+
+@pytest.mark.slow
+def test_a_drive_is_the_same_if_only_parts_of_the_map_are_sent(
+    simulate: MakeSimulation, tmp_path: Path
+) -> None:
+    params = tmp_path / "parts.yaml"
+    params.write_text(PARTS_ONLY, encoding="utf-8")
+    commands: list[list[tuple[float, float]]] = []
+    maps: list[int] = []
+    for files in ((), (params,)):
+        simulation = simulate(
+            world="course",
+            goals=((-6.0, -3.0),),
+            max_time_s=20.0,
+            params_files=files,
+        )
+        sent: list[tuple[float, float]] = []
+        whole: list[OccupancyGrid] = []
+
+        def note(msg: Twist, sent: list[tuple[float, float]] = sent) -> None:
+            sent.append((msg.linear.x, msg.angular.z))
+
+        subscribe = simulation.sim.create_subscription
+        subscribe(Twist, "/cmd_vel", note, 10)
+        subscribe(OccupancyGrid, "/map", whole.append, 10, shared=True)
+        simulation.run()
+        commands.append(sent)
+        maps.append(len(whole))
+    assert len(commands[0]) > 100
+    assert commands[1] == commands[0]
+    assert maps[1] < maps[0] / 2
 
 
 @pytest.mark.long

@@ -17,6 +17,11 @@ def time_message(stamp_ns: int) -> Time:
     return Time(sec=seconds, nanosec=nanoseconds)
 
 
+def stamp_of(header: Header) -> int:
+    """Return the stamp of a header, ns."""
+    return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
 def header(stamp_ns: int, frame: str) -> Header:
     """Return the header of a message."""
     return Header(stamp=time_message(stamp_ns), frame_id=frame)

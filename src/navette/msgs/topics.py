@@ -62,7 +62,8 @@ MAP_POINTS = StackTopic("/map/points", "sensor_msgs/msg/PointCloud2", 1, True)
 STATIC_MAP = StackTopic("/static_map", "nav_msgs/msg/OccupancyGrid", 1, True)
 TRAJECTORY = StackTopic("/trajectory", "nav_msgs/msg/Path", 1, True)
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
-MAP_UPDATES = StackTopic("/map_updates", "map_msgs/msg/OccupancyGridUpdate")
+# Several updates are kept, for late subscribers with an older whole map.
+MAP_UPDATES = StackTopic("/map_updates", "map_msgs/msg/OccupancyGridUpdate", 10, True)
 LOCAL_COSTMAP = StackTopic(
     "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
 )

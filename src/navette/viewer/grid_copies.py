@@ -2,11 +2,15 @@
 
 Updates (``map_msgs/OccupancyGridUpdate``) of a grid are on ``<topic>_updates``.
 Publishers such as the map memory publish the whole grid after each of them, with the
-same stamp. A client that subscribes to both gets it only if updates did not suffice.
+same stamp, and announce a grid that replaces the one before with an update without
+cells. A client that subscribes to both gets the grid only if updates did not suffice.
 """
 
 from typing import NamedTuple
 
+from navette.errors import DecodeError
+from navette.msgs import deserialize
+from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.viewer.large_grid import STAMP, LargeGrid
 from navette.viewer.outbox import MessageFrame, Outbox
 from navette.viewer.replies import Channel
@@ -50,13 +54,16 @@ class GridCopies:
             update = self._updates.get(channel.topic)
             if not self._has(stream, payload, update):
                 self._outbox.put_data(stream, frame)
-                if update is not None:
+                if update is not None and update.stamp == payload.stamp:
                     self._copies[stream] = self._copy(stream, payload, update)
             return
         self._outbox.put_data(stream, frame)
         if channel.type_name == _TYPE:
             grids = channel.topic.removesuffix(_SUFFIX)
-            self._updates[grids] = _Update(stream, payload[STAMP])
+            if _has_cells(payload):
+                self._updates[grids] = _Update(stream, payload[STAMP])
+            else:  # the next grid replaces the one before
+                self._updates.pop(grids, None)
 
     def forget(self, subscription_id: int) -> None:
         """Note that a subscription has ended."""
@@ -74,3 +81,10 @@ class GridCopies:
     def _copy(self, stream: int, grid: LargeGrid, update: _Update) -> _Copy:
         lost, updates_id = self._outbox.lost, update.subscription_id
         return _Copy(grid.geometry, updates_id, lost(stream), lost(updates_id))
+
+
+def _has_cells(update: bytes) -> bool:
+    try:
+        return len(deserialize(update, OccupancyGridUpdate).data) > 0
+    except DecodeError:  # the client cannot apply it either
+        return False

@@ -14,7 +14,7 @@ from navette.msgs.geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
-from navette.runtime import Input, StageNode
+from navette.runtime import Input, MessageInfo, StageNode
 from navette.runtime.input_check import SharedInputChecks, input_check
 from navette.runtime.testing import GraphHarness
 
@@ -54,6 +54,25 @@ class Listener(StageNode):
 
     def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
         self.dropped.append((topic, error.reason))
+
+
+class Numbering(StageNode):
+    """Stores the numbers of the texts other than "bad"."""
+
+    INPUTS = (
+        Input(
+            topic="/text", type="std_msgs/msg/String", role="text", callback="on_text"
+        ),
+    )
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("numbering", **kwargs)
+        self.received: list[tuple[str, int | None]] = []
+
+    def on_text(self, msg: String, info: MessageInfo) -> None:
+        if msg.data.startswith("bad"):
+            raise InvalidInputError("bad_text", f"data is {msg.data!r}")
+        self.received.append((msg.data, info["publication_sequence_number"]))
 
 
 def odometry(x: float = 0.0) -> Odometry:
@@ -281,3 +300,13 @@ def test_a_fast_input_is_used_at_its_largest_rate_by_the_stamps() -> None:
         used = [msg.pose.pose.position.x for msg in node.received]
         assert used == [0.0, 4.0, 9.0], "the last of each period"
         assert not node.is_stale("/odom")
+
+
+def test_a_callback_may_take_the_info_of_its_messages() -> None:
+    with GraphHarness() as graph:
+        node = graph.add(Numbering(context=graph.context))
+        for text in ("one", "bad", "three"):
+            graph.publish("/text", String(data=text))
+            graph.run_for(0.01)
+        assert node.received == [("one", 1), ("three", 3)]
+        assert node.dropped_inputs == {("/text", "bad_text"): 1}

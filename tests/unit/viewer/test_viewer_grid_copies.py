@@ -143,6 +143,35 @@ def test_a_grid_of_another_extent_is_sent(page: Page) -> None:
     assert not page.has_grid()
 
 
+def test_a_grid_that_replaces_the_one_before_is_sent(page: Page) -> None:
+    """An update without cells announces it."""
+    header = Header(stamp=Time(sec=3), frame_id="map")
+    empty = serialize(OccupancyGridUpdate(header=header))
+    page.hub.subscriptions.message(page.updates, 3, empty)
+    page.hub.subscriptions.message(page.map, 3, payload_of(grid(3)))
+    assert page.has_grid()
+    page.publish(4)
+    assert not page.has_grid()
+
+
+def test_a_grid_from_before_the_newest_update_is_followed_by_a_whole_one() -> None:
+    """A latched grid is from before the newest update: others may lie between."""
+    page = Page()
+    page.hub.subscriptions.message(page.updates, 3, update(3))
+    page.hub.subscriptions.message(page.map, 1, payload_of(grid(1)))
+    assert page.has_grid()
+    page.publish(4)
+    assert page.has_grid()
+    page.publish(5)
+    assert not page.has_grid()
+
+
+def test_an_update_that_cannot_be_decoded_is_none(page: Page) -> None:
+    page.hub.subscriptions.message(page.updates, 3, update(3)[:-1])
+    page.hub.subscriptions.message(page.map, 3, payload_of(grid(3)))
+    assert page.has_grid()
+
+
 def test_after_a_lost_update_the_next_grid_is_sent(page: Page) -> None:
     for stamp_s in (3, 4, 5):  # more than the outbox keeps of a slow client
         page.hub.subscriptions.message(page.updates, stamp_s, update(stamp_s))

@@ -238,6 +238,7 @@ class ControlNode(MotionNode):
         self._follow_server.interrupt("the clock was set back")
         self._new_follower(self.params)
         self._path = np.empty((0, 3))
+        self._maps.forget()
         self._obstacles.reset()
         self._moving = MovingDiscs(NO_DISCS, 0)
         self._odometry_period.reset()

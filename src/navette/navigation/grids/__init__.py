@@ -68,6 +68,7 @@ from navette.navigation.grids.obstacles import (
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
+from navette.navigation.grids.received_map import MapPart, MapReader, ReceivedMap
 from navette.navigation.grids.regions import SquareRegion
 from navette.navigation.grids.sparse import (
     RowSpans,
@@ -102,6 +103,9 @@ __all__ = [
     "copied",
     "padded",
     "sparse_zeros",
+    "MapPart",
+    "MapReader",
+    "ReceivedMap",
     "SquareRegion",
     "NO_DISCS",
     "MovingDiscs",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
-from navette.geometry.messages import header
+from navette.geometry.messages import header, stamp_of
 from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
 
 _KEPT = 16
@@ -126,8 +126,7 @@ class HitPoints:
             InvalidValueError: it is invalid; see :func:`points_from_message`.
         """
         offsets = _checked_offsets(msg)
-        stamp = msg.header.stamp
-        stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+        stamp_ns = stamp_of(msg.header)
         self._clouds.pop(stamp_ns, None)  # of an earlier run: now the newest
         self._clouds[stamp_ns] = msg, offsets
         while len(self._clouds) > _KEPT:

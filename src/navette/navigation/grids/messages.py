@@ -6,11 +6,10 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.msgs.builtin_interfaces.msg import Time
+from navette.geometry.messages import header, time_message
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion
 from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
-from navette.msgs.std_msgs.msg import Header
 from navette.navigation.grids.checks import grid_array
 from navette.navigation.grids.spec import Cells, GridSpec
 from navette.navigation.grids.windows import CellWindow
@@ -25,21 +24,19 @@ def grid_to_message(
         InvalidValueError: ``cells`` does not have the spec's shape.
     """
     data = grid_array("cells", cells, np.int8, spec).reshape(-1)
-    stamp = _stamp(stamp_ns)
     x, y, z, w = quaternion_from_yaw(spec.origin.yaw)
     origin = Pose(
         position=Point(x=float(spec.origin.x), y=float(spec.origin.y)),
         orientation=Quaternion(x=x, y=y, z=z, w=w),
     )
     info = MapMetaData(
-        map_load_time=stamp,
+        map_load_time=time_message(stamp_ns),
         resolution=float(np.float32(spec.resolution)),  # as in a copy
         width=spec.width,
         height=spec.height,
         origin=origin,
     )
-    header = Header(stamp=stamp, frame_id=frame_id)
-    return OccupancyGrid(header=header, info=info, data=data)
+    return OccupancyGrid(header=header(stamp_ns, frame_id), info=info, data=data)
 
 
 def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
@@ -80,7 +77,7 @@ def window_to_message(
     """Return a message with a copy of the window of ``cells`` (H, W)."""
     height, width = window.shape
     return OccupancyGridUpdate(
-        header=Header(stamp=_stamp(stamp_ns), frame_id=frame_id),
+        header=header(stamp_ns, frame_id),
         x=window.first_column,
         y=window.first_row,
         width=width,
@@ -112,7 +109,3 @@ def window_from_message(
             f"{spec.height} cells"
         )
     return cells.reshape(window.shape), window
-
-
-def _stamp(stamp_ns: int) -> Time:
-    return Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2
+from navette.geometry.messages import stamp_of
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.spec import UNKNOWN, Cells, GridSpec
@@ -51,11 +52,8 @@ def discs_from_message(msg: ObstacleArray, frame: str) -> MovingDiscs:
     for row in rows:
         if not all(map(math.isfinite, row)) or row[4] < 0:
             raise InvalidInputError("not_finite", f"obstacle {row}; expected finite")
-    stamp = msg.header.stamp
-    return MovingDiscs(
-        np.array(rows, np.float64).reshape(-1, 5),
-        stamp.sec * 1_000_000_000 + stamp.nanosec,
-    )
+    discs = np.array(rows, np.float64).reshape(-1, 5)
+    return MovingDiscs(discs, stamp_of(msg.header))
 
 
 def inside_discs(points: Array, discs: Array, margin_m: float) -> NDArray[np.bool_]:

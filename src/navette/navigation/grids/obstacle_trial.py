@@ -9,6 +9,7 @@ from navette.geometry import Footprint, Pose2
 from navette.navigation.grids.hit_points import points_to_message
 from navette.navigation.grids.messages import grid_to_message
 from navette.navigation.grids.obstacles import ObstacleTracker
+from navette.navigation.grids.received_map import ReceivedMap
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec
 
 _MAP = "map"
@@ -34,12 +35,14 @@ class _Standing:
 def load_obstacle_kernels(footprint: Footprint) -> None:
     """Place the obstacles of a map and of a costmap of four cells."""
     cells = np.array([[LETHAL, FREE], [FREE, UNKNOWN]], np.int8)
-    grid = grid_to_message(cells, GridSpec(0.05, 2, 2), _MAP, 0)
+    spec = GridSpec(0.05, 2, 2)
+    grid = grid_to_message(cells, spec, _MAP, 0)
+    known = ReceivedMap(cells, spec)
     points = points_to_message(np.array([(0.02, 0.02)]), _MAP, 0)
     trial = ObstacleTracker(_Standing(), footprint, hand_m=0.0)
     trial.remember_points(points)
     trial.receive_points(points)
     for _ in range(2):  # the second map is compared with the first
-        trial.remember(grid, 0)
+        trial.remember(known, None, 0, 0)
     trial.receive(grid, 0)
     trial.place(0, LETHAL, reach_m=1.0, unseen_reach_m=1.0)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
+from navette.geometry.messages import stamp_of
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids.alignment import placed
@@ -17,7 +18,8 @@ from navette.navigation.grids.map_obstacles import MapObstacles, Region
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message
 from navette.navigation.grids.obstacle_points import obstacle_points, points_within
-from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.navigation.grids.received_map import MapPart, ReceivedMap
+from navette.navigation.grids.spec import UNKNOWN, Cells, GridSpec
 from navette.navigation.grids.sub_cells import point_radius
 from navette.navigation.grids.unseen import (
     FARTHEST_M,
@@ -104,23 +106,36 @@ class ObstacleTracker:
         """Store a costmap until it is placed."""
         self._costmap, self._costmap_ns = msg, now_ns
 
-    def remember(self, msg: OccupancyGrid, now_ns: int) -> None:
+    def remember(
+        self, known: ReceivedMap, part: MapPart | None, stamp_ns: int, now_ns: int
+    ) -> None:
         """Use a map, in the map frame, for what the costmap does not show.
 
         What earlier maps have shown is kept near the robot only.
 
-        Raises:
-            InvalidValueError: the map is invalid.
+        Args:
+            known: the map.
+            part: changes the map first; None: the whole map is new.
+            stamp_ns: stamp of the map.
+            now_ns: time of the node's clock.
         """
-        cells, spec = grid_from_message(msg)
-        self._map.receive(cells, spec, _stamp_ns(msg))
+        near = self._near_robot(known.spec, now_ns)
+        before = self._seen
+        is_shared = before is not None and before.cells is known.cells
+        if is_shared and part is not None and _loses(part, known.cells, near):
+            known.share()  # what the map loses has been seen nevertheless
+        known.update(part)
+        self._map.receive(known.cells, known.spec, stamp_ns)
+        self._seen = _seen_also(Layer(known.cells, known.spec), before, near)
+
+    def _near_robot(self, spec: GridSpec, now_ns: int) -> CellWindow:
+        """Return the cells near the robot; all while its pose is not known."""
         robot = self._poses.predicted_now(now_ns)
-        near = CellWindow.whole(cells.shape)
-        if robot is not None:
-            row, column = spec.cell_of(robot.x, robot.y)
-            here = CellWindow(row, row + 1, column, column + 1)
-            near = here.grown(math.ceil(_NEAR_M / spec.resolution), cells.shape)
-        self._seen = _seen_also(Layer(cells, spec), self._seen, near)
+        if robot is None:
+            return CellWindow.whole(spec.shape)
+        row, column = spec.cell_of(robot.x, robot.y)
+        here = CellWindow(row, row + 1, column, column + 1)
+        return here.grown(math.ceil(_NEAR_M / spec.resolution), spec.shape)
 
     def relocate(self) -> None:
         """Place the newest costmap again: the robot's pose in the map has jumped.
@@ -177,7 +192,7 @@ class ObstacleTracker:
         nearby = partial(
             obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m
         )
-        hits = self._hits.at(_stamp_ns(msg))
+        hits = self._hits.at(stamp_of(msg.header))
         if hits is None:
             points = nearby(cells, spec, map_T_frame)
             radius = max(spec.resolution / 2, self._map.half_cell_m)
@@ -217,9 +232,16 @@ class ObstacleTracker:
             if base_T_frame is None:
                 return None
             self._base_T_costmap = (frame, base_T_frame)
-        stamp = msg.header.stamp
-        map_T_base = self._poses.predicted_at(stamp.sec * 1_000_000_000 + stamp.nanosec)
+        map_T_base = self._poses.predicted_at(stamp_of(msg.header))
         return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+
+
+def _loses(part: MapPart, cells: Cells, near: CellWindow) -> bool:
+    """Return whether a known cell of a map in a window is unknown in its new part."""
+    down, right = -part.window.first_row, -part.window.first_column
+    here = near.shifted(down, right).grown(0, part.cells.shape)
+    lost: bool = _has_lost(part.cells, cells, here, down, right)
+    return lost
 
 
 def _seen_also(now: Layer, before: Layer | None, near: CellWindow) -> Layer:
@@ -267,8 +289,3 @@ def _has_lost(now: Any, before: Any, near: Any, down: int, right: int) -> bool:
         if lost:
             return True
     return False
-
-
-def _stamp_ns(msg: OccupancyGrid) -> int:
-    stamp = msg.header.stamp
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)

@@ -23,6 +23,7 @@ from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
+    NO_CELLS,
     NO_DISCS,
     CellWindow,
     GridSpec,
@@ -124,7 +125,7 @@ class MapMemoryNode(StageNode):
         ),
         Output.of(
             topics.MAP_UPDATES,
-            "the part of the map that changed, while somebody subscribes",
+            "the part of the map that changed; without cells if /map replaces it",
         ),
         Output.of(
             topics.GLOBAL_COSTMAP,
@@ -142,6 +143,7 @@ class MapMemoryNode(StageNode):
     def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._has_nav2_reader = False
+        self._map_ns = -1  # stamp of the newest map
         self._tracker = self._new_tracker()
         trajectory = self.resolve_topic_name(topics.TRAJECTORY.name)
         self._trajectories = next(
@@ -234,6 +236,7 @@ class MapMemoryNode(StageNode):
     def on_time_jump(self) -> None:
         """Reset the map."""
         self._tracker.reset()
+        self._map_ns = -1
         self._restart()
 
     def _new_tracker(self) -> PoseTracker:
@@ -257,7 +260,7 @@ class MapMemoryNode(StageNode):
         self._keyframes = Keyframes()
         self._last_stamp_ns = 0
         self._published: OccupancyGrid | None = None  # None: not built yet
-        self._map_ns = self._whole_ns = self._served = 0
+        self._whole_ns = self._served = 0
         self._publish_map(self._now_ns())
 
     def _relocate(self) -> None:
@@ -363,27 +366,32 @@ class MapMemoryNode(StageNode):
         return dataclasses.replace(arrival.costmap, hits=points)
 
     def _publish_map(self, stamp_ns: int) -> None:
+        if 0 <= self._map_ns - stamp_ns < NEW_RUN_NS:
+            # A costmap that is fused again after a request: stamps identify the maps.
+            stamp_ns = self._map_ns + 1
         memory, frame_id = self._memory, self.params.map_frame
         points = points_to_message(memory.hit_points(), frame_id, stamp_ns)
         self.hand_over(topics.MAP_POINTS.name, points)
         window = memory.take_change()
-        is_update = window is not None and stamp_ns > self._map_ns
+        if window is None or stamp_ns < self._map_ns:
+            window = NO_CELLS
         self._map_ns, self._published = stamp_ns, None
-        if window is not None and is_update and not window.is_empty:
-            self._publish_update(window)
-        is_served = is_update and self._subscribers() <= self._served
+        self._publish_update(window)
+        is_served = not window.is_empty and self._subscribers() <= self._served
         if self.params.always_send_full_map or not is_served:
             self._publish_whole()
 
     def _publish_update(self, window: CellWindow) -> None:
-        """Publish the changed part before the whole map of the same stamp."""
-        names = (topics.MAP_UPDATES.name, topics.GLOBAL_COSTMAP_UPDATES.name)
-        listened = [name for name in names if self.has_listeners(name)]
-        if listened:
-            cells, frame_id = self._memory.cells, self.params.map_frame
-            update = window_to_message(cells, window, frame_id, self._map_ns)
-            for name in listened:
-                self.hand_over(name, update)
+        """Publish the changed part before the whole map of the same stamp.
+
+        No cells: the whole map replaces the one before. Each map has an update, so that
+        readers notice by its number if one is missing.
+        """
+        cells, frame_id = self._memory.cells, self.params.map_frame
+        update = window_to_message(cells, window, frame_id, self._map_ns)
+        self.hand_over(topics.MAP_UPDATES.name, update)
+        if self.has_listeners(topics.GLOBAL_COSTMAP_UPDATES.name):
+            self.hand_over(topics.GLOBAL_COSTMAP_UPDATES.name, update)
 
     def _publish_whole(self) -> None:
         self._served, self._whole_ns = self._subscribers(), self._map_ns

@@ -36,8 +36,9 @@ class MapMemoryParams(FrameParams):
     )
     always_send_full_map: bool = param(
         True,
-        "publish the whole map at each update; otherwise only if its extent changed or "
-        "a subscriber came, and the changed part on /map_updates",
+        "publish the whole map at each update, for programs that read /map only; "
+        "otherwise if its extent changed or a subscriber came, and the changed part on "
+        "/map_updates",
     )
     update_period_s: float = param(
         1.0, "period of checking whether the robot moved far enough", at_least=0.001

@@ -2,10 +2,10 @@
 
 from navette.navigation.planning import astar, breadth_first, dijkstra
 from navette.navigation.planning.navigator import Navigator
+from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Plan, Planner
-from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.reports import (
     NavigatorReport,
     Phase,

@@ -17,13 +17,13 @@ from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
+from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_progress import PathProgress
 from navette.navigation.planning.path_shape import Poses, lengths
 from navette.navigation.planning.planner import Goal, Plan, Planner
 from navette.navigation.planning.progress_checker import ProgressChecker
-from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.reports import (
     NavigatorReport,
     Phase,

@@ -20,7 +20,6 @@ from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
-from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import PointCloud2
@@ -30,20 +29,24 @@ from navette.msgs.std_srvs.srv import (
     Trigger_Request,
     Trigger_Response,
 )
+from navette.navigation.grids import MapPart
 from navette.navigation.planning.localization_check import LocalizationCheck
 from navette.navigation.planning.map_inputs import MapInputs
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Planner
-from navette.navigation.planning.received_map import MapPart
 from navette.navigation.planning.reports import RobotMotion
 from navette.navigation.planning.servers.navigator_status import NavigatorStatus
 from navette.navigation.planning.servers.path_server import PathServer
 from navette.navigation.planning.servers.smoother_server import SmootherServer
 from navette.navigation.planning.step_runner import StepRunner
 from navette.navigation.servers.lifecycle import StageLifecycle
-from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.navigation.servers.map_reader_node import (
+    MAP_UPDATES_INPUT,
+    MapReaderNode,
+)
+from navette.runtime import Input, Output
 from navette.runtime.input_check import input_check
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
@@ -63,7 +66,7 @@ _BLOCKED = "blocked"
 _STALLED = "stalled"
 
 
-class PlannerNode(StageNode):
+class PlannerNode(MapReaderNode):
     """Plan to the newest goal until the robot has reached it."""
 
     PARAMS = PlannerParams
@@ -73,11 +76,7 @@ class PlannerNode(StageNode):
             "map of everything seen so far",
             callback="on_map",
         ),
-        Input.of(
-            topics.MAP_UPDATES,
-            "the part of the map that changed",
-            callback="on_map_update",
-        ),
+        MAP_UPDATES_INPUT,
         Input.of(
             topics.MAP_POINTS,
             "where beams ended, within the lethal cells of the map with the same stamp",
@@ -165,7 +164,7 @@ class PlannerNode(StageNode):
         )
         self._odometry_ns: int | None = None
         self._localization = LocalizationCheck()
-        self._space = MapInputs()
+        self._space = MapInputs(self._maps)
         self._status = NavigatorStatus(self)
         self._path_ns = 0  # of the newest path
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
@@ -200,25 +199,13 @@ class PlannerNode(StageNode):
         """Store the moving obstacles for the next step."""
         self._space.receive_moving(msg, self.params.map_frame)
 
-    def on_map(self, msg: OccupancyGrid) -> None:
-        """Store the map; a path that it blocks is replaced at once."""
-        stamp_ns = stamp_to_ns(msg.header.stamp)
-        if self._space.receive_map(msg, stamp_ns, self.params.map_frame):
-            self._apply_map()
-
-    def on_map_update(self, msg: OccupancyGridUpdate) -> None:
-        """Change a part of the map; a path that it blocks is replaced at once."""
-        stamp_ns = stamp_to_ns(msg.header.stamp)
-        part = self._space.receive_update(msg, stamp_ns, self.params.map_frame)
-        if part is not None:
-            self._apply_map(part)
-
     def on_map_points(self, msg: PointCloud2) -> None:
         """Store where beams ended; usually it arrives before the map of its stamp."""
         if self._space.receive_points(msg):
-            self._apply_map()
+            self.on_new_map(None)
 
-    def _apply_map(self, part: MapPart | None = None) -> None:
+    def on_new_map(self, part: MapPart | None) -> None:
+        """Use the map; a path that it blocks is replaced at once."""
         change = self._space.change(part)
         # The worker may still be busy with a request, or a step that was dropped.
         self._runner.change(

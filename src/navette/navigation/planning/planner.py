@@ -16,6 +16,7 @@ from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import nearest_reachable
 from navette.navigation.planning.margin_planner import MarginPlanner
 from navette.navigation.planning.methods import PLANNERS
+from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
@@ -23,7 +24,6 @@ from navette.navigation.planning.path_shape import Poses, turn_in_place
 from navette.navigation.planning.plan import Plan, cost_of
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.prepared_map import PreparedMap
-from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.route import GridRouter
 from navette.navigation.planning.tight_places import (
     TightPlanner,

@@ -17,6 +17,7 @@ from navette.navigation.grids import (
     unseen_mask,
 )
 from navette.navigation.planning.moving_cost import with_moving
+from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planning_grid import (
     NO_HITS,
@@ -28,7 +29,6 @@ from navette.navigation.planning.planning_grid import (
     without_obstacles_in,
 )
 from navette.navigation.planning.planning_map import PlanningMap
-from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.traversal import LETHAL
 
 

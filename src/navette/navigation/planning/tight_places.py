@@ -24,6 +24,7 @@ from navette.navigation.planning.drive_flood import DriveMoves
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
+from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.own_methods import Goal
 from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
@@ -36,7 +37,6 @@ from navette.navigation.planning.path_shape import (
 from navette.navigation.planning.plan import Plan
 from navette.navigation.planning.planning_grid import BodyShape
 from navette.navigation.planning.prepared_map import PreparedMap
-from navette.navigation.planning.received_map import NewMap
 from navette.navigation.planning.route import GridRouter
 
 # Searches on the map's own cells, and through gaps, get this part of the budget.

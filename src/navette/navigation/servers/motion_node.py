@@ -6,22 +6,29 @@ from typing import Any, ClassVar
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Footprint
 from navette.msgs import topics
+from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
+    MapPart,
     Obstacles,
     ObstacleTracker,
     grid_from_message,
     load_obstacle_kernels,
 )
 from navette.navigation.grids.checks import check_frame
+from navette.navigation.servers.map_reader_node import (
+    MAP_UPDATES_INPUT,
+    MapReaderNode,
+)
 from navette.navigation.shared_params import MotionParams
+from navette.runtime import MessageInfo
 from navette.runtime.stage.input_period import InputPeriod
 from navette.runtime.stage.odometry import PoseTracker
-from navette.runtime.stage.stage_node import Input, StageNode
+from navette.runtime.stage.stage_node import Input
 
 
-class MotionNode(StageNode):
+class MotionNode(MapReaderNode):
     """Node that locates the robot and keeps the obstacles around it.
 
     A derived class subscribes to MOTION_INPUTS and implements ``on_odometry``.
@@ -57,6 +64,7 @@ class MotionNode(StageNode):
             "obstacles that the costmap does not show, such as behind the robot",
             callback="on_map",
         ),
+        MAP_UPDATES_INPUT,
         Input.of(
             topics.KEEPOUT_ZONES,
             "zones that the robot must not touch",
@@ -85,10 +93,19 @@ class MotionNode(StageNode):
         self._costmap_period.note(self._now_ns)
         self._obstacles.receive(msg, self._now_ns)
 
-    def on_map(self, msg: OccupancyGrid) -> None:
-        """Store the map for what the costmap does not show."""
-        check_frame("map", msg.header.frame_id, self.params.map_frame)
-        self._obstacles.remember(msg, self._now_ns)
+    def on_map_update(self, msg: OccupancyGridUpdate, info: MessageInfo) -> None:
+        """Store the newest update until the obstacles are placed.
+
+        The whole map of its stamp may arrive first, and is used without a copy.
+        """
+        self._apply_updates()
+        self._receive_update(msg, info)
+
+    def on_new_map(self, part: MapPart | None) -> None:
+        """Use the map for what the costmap does not show."""
+        maps = self._maps
+        assert maps.map is not None, "a map has arrived"
+        self._obstacles.remember(maps.map, part, maps.stamp_ns, self._now_ns)
 
     def on_keepout_zones(self, msg: OccupancyGrid) -> None:
         """Keep clear of zones as of obstacles."""
@@ -119,8 +136,9 @@ class MotionNode(StageNode):
         )
 
     def _start_tracking(self) -> None:
-        """Forget the poses and the obstacles."""
+        """Forget the poses, the map and the obstacles."""
         params = self.params
+        self._maps.forget()
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         footprint = Footprint.from_flat(params.footprint_m)
         self._obstacles = ObstacleTracker(
@@ -137,6 +155,10 @@ class MotionNode(StageNode):
         self, reach_m: float, unseen_reach_m: float
     ) -> Obstacles | None:
         """Return the obstacles of a costmap that is newly placed; None: no change."""
+        try:
+            self._apply_updates()
+        except InvalidInputError as error:
+            self.drop_input(topics.MAP_UPDATES.name, error)
         try:
             return self._obstacles.place(
                 self._now_ns, self.params.lethal_cost, reach_m, unseen_reach_m

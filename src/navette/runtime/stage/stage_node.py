@@ -23,10 +23,11 @@ from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from navette.runtime.ros_clock import JumpThreshold, TimeJump
+from navette.runtime.signatures import takes_arguments
 from navette.runtime.stage.dropped_inputs import DroppedInputs
 from navette.runtime.stage.params import declare_params
 from navette.runtime.stage.stamp_selection import StampSelection
-from navette.runtime.subscription import Subscription
+from navette.runtime.subscription import MessageInfo, Subscription
 from navette.runtime.time import Duration, stamp_to_ns
 
 
@@ -75,7 +76,7 @@ class _Topic:
         )
 
 
-OnMessage = Callable[[Any], Any]
+OnMessage = Callable[..., Any]
 """Receives the messages of an input."""
 
 
@@ -83,6 +84,7 @@ OnMessage = Callable[[Any], Any]
 class Input(_Topic):
     """A subscription; ``callback`` is the method that gets the message, or its name."""
 
+    #: May take the message's MessageInfo as well.
     callback: str | OnMessage
     #: Time since the last arrival after which the input is stale; None = no limit.
     timeout_s: float | None = None
@@ -239,7 +241,7 @@ class StageNode(Node):
         self._arrivals_ns.clear()
         self.on_time_jump()
 
-    def _subscribe(self, declared: Input, receive: Callable[[Any], Any]) -> None:
+    def _subscribe(self, declared: Input, receive: OnMessage) -> None:
         """Subscribe to each type of an input."""
         kinds = [get_interface(t) for t in (declared.type, *declared.other_types)]
         for kind in kinds:
@@ -259,10 +261,11 @@ class StageNode(Node):
                 self._dropped.add, declared.topic, undecodable
             )
 
-    def _receiver(self, declared: Input) -> Callable[[Any], Any]:
+    def _receiver(self, declared: Input) -> OnMessage:
         callback = declared.callback
         if isinstance(callback, str):
             callback = getattr(self, callback)
+        takes_info = takes_arguments(callback, 2)
         if declared.most_hz is not None:
             callback = _at_most(declared.most_hz, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
@@ -273,20 +276,23 @@ class StageNode(Node):
         }
         clock = self._clock
 
-        def receive(msg: Any) -> Any:
+        def receive(msg: Any, *info: MessageInfo) -> Any:
             before_ns = arrivals.get(topic)
             try:
                 check = checks[msg.__class__]
                 if msg is not check.passed:
                     check(msg)
                 arrivals[topic] = clock.now_ns
-                return callback(msg)
+                return callback(msg, *info)
             except InvalidInputError as error:
                 self._restore_arrival(topic, before_ns)
                 self._dropped.add(topic, error)
                 self.on_input_dropped(topic, msg, error)
 
-        return receive
+        def receive_with_info(msg: Any, info: MessageInfo) -> Any:
+            return receive(msg, info)
+
+        return receive_with_info if takes_info else receive
 
     def _restore_arrival(self, topic: str, arrival_ns: int | None) -> None:
         if arrival_ns is None:
@@ -360,11 +366,11 @@ class StageNode(Node):
         self.params = declare_params(self, type(self.params))
 
 
-def _at_most(rate_hz: float, callback: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _at_most(rate_hz: float, callback: OnMessage) -> OnMessage:
     """Return a callback for messages of a header that skips those not selected."""
     takes = StampSelection(rate_hz).takes
 
-    def call(msg: Any) -> Any:
-        return callback(msg) if takes(stamp_to_ns(msg.header.stamp)) else None
+    def call(msg: Any, *info: MessageInfo) -> Any:
+        return callback(msg, *info) if takes(stamp_to_ns(msg.header.stamp)) else None
 
     return call

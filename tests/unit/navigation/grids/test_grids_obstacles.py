@@ -6,15 +6,20 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navette.geometry import Pose2
+from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
+    FREE,
     LETHAL,
     UNKNOWN,
     CellWindow,
     GridSpec,
     Layer,
+    MapPart,
+    ObstacleTracker,
+    ReceivedMap,
     cell_points,
     grid_frame,
+    grid_to_message,
     mark_points,
     obstacle_points,
     points_to_message,
@@ -211,3 +216,58 @@ def test_a_map_that_only_grew_is_used_as_it_is() -> None:
     assert _seen_also(now, before, CellWindow.whole(large.shape)) is now
     cells[7, 7] = UNKNOWN
     assert _seen_also(now, before, CellWindow.whole(large.shape)).cells[7, 7] == 0
+
+
+class Driving:
+    """The poses of a robot that drives about in the map."""
+
+    map_frame = "map"
+    first = Pose2(0.0, 0.0, 0.0)
+
+    def __init__(self) -> None:
+        self.pose = self.first
+
+    def predicted_at(self, stamp_ns: int) -> Pose2:
+        return self.pose
+
+    def predicted_now(self, now_ns: int) -> Pose2:
+        return self.pose
+
+    def transform_to_base(self, frame_id: str) -> Pose2:
+        return self.first
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS)
+def test_parts_of_a_map_give_the_same_obstacles_as_whole_maps(seed: int) -> None:
+    """Also where cells that were known become unknown, which have been seen."""
+    rng = np.random.default_rng(seed)
+    spec = GridSpec(0.1, 90, 90, Pose2(-4.5, -4.5, 0.0))
+    cells = rng.choice(np.array([UNKNOWN, FREE], np.int8), spec.shape)
+    costmap = np.full((3, 3), UNKNOWN, np.int8)
+    poses = Driving()
+    outline = Footprint.from_flat((0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2))
+    by_parts = ObstacleTracker(poses, outline, hand_m=0.0)
+    by_wholes = ObstacleTracker(poses, outline, hand_m=0.0)
+    known = ReceivedMap(cells.copy(), spec)
+    by_parts.remember(known, None, 0, 0)
+    by_wholes.remember(ReceivedMap(cells.copy(), spec), None, 0, 0)
+    for stamp_ns in range(1, 8):
+        poses.pose = Pose2(*rng.uniform(-2.0, 2.0, 2).tolist(), 0.0)
+        row, column = rng.integers(0, 80, 2).tolist()
+        window = CellWindow(row, row + 10, column, column + 10)
+        values = np.array([UNKNOWN, FREE, LETHAL], np.int8)
+        part = rng.choice(values, window.shape, p=rng.dirichlet((0.3, 1, 1)))
+        cells[window.slices] = part
+        by_parts.remember(known, MapPart(part, window), stamp_ns, 0)
+        by_wholes.remember(ReceivedMap(cells.copy(), spec), None, stamp_ns, 0)
+        np.testing.assert_array_equal(known.cells, cells)
+        grid = grid_to_message(costmap, GridSpec(0.1, 3, 3), "map", stamp_ns)
+        placed = []
+        for tracker in (by_parts, by_wholes):
+            tracker.receive(grid, 0)
+            placed.append(tracker.place(0, LETHAL, reach_m=2.0, unseen_reach_m=1.0))
+        assert placed[0] is not None
+        assert placed[1] is not None
+        for one, other in zip(*placed, strict=True):
+            np.testing.assert_array_equal(one, other)

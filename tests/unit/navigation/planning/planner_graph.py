@@ -12,7 +12,12 @@ from navette.msgs.geometry_msgs.msg import (
     Quaternion,
 )
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.navigation.grids import CellWindow, grid_to_message, window_to_message
+from navette.navigation.grids import (
+    NO_CELLS,
+    CellWindow,
+    grid_to_message,
+    window_to_message,
+)
 from navette.navigation.grids.spec import Cells
 from navette.navigation.planning.node import PlannerNode
 from navette.runtime import Parameter
@@ -27,7 +32,7 @@ class World:
         self.graph = graph
         self.occupancy, self.spec = empty_map(10, 8)
         self.pose, self.odometry = Pose2(1, 4, 0), True
-        self.sent_ns = 0
+        self.sent_ns = self.map_ns = 0
         overrides = [Parameter(name, value=value) for name, value in params.items()]
         self.node = graph.add(
             PlannerNode(context=graph.context, parameter_overrides=overrides)
@@ -37,9 +42,13 @@ class World:
         graph.node.create_timer(0.1, self._move)
 
     def send_map(self, frame: str = "map", stamp_ns: int | None = None) -> None:
-        now_ns = self.graph.now_ns if stamp_ns is None else stamp_ns
-        msg = grid_to_message(self.occupancy.copy(), self.spec, frame, now_ns)
+        self.map_ns = self.graph.now_ns if stamp_ns is None else stamp_ns
+        msg = grid_to_message(self.occupancy.copy(), self.spec, frame, self.map_ns)
         self.graph.publish("/map", msg, latched=True)
+
+    def begin_updates(self) -> None:
+        """Publish the update of the whole map, which later ones follow."""
+        self.send_part(NO_CELLS, stamp_ns=self.map_ns)
 
     def send_part(
         self,
@@ -56,7 +65,7 @@ class World:
             whole = CellWindow.whole(cells.shape)
             msg = window_to_message(cells, whole, frame, self.sent_ns)
             msg.x, msg.y = window.first_column, window.first_row
-        self.graph.publish("/map_updates", msg)
+        self.graph.publish("/map_updates", msg, latched=True)
 
     def send(self, x: float, y: float, frame: str = "map") -> None:
         msg = PointStamped(point=Point(x=x, y=y))

@@ -271,6 +271,7 @@ def test_a_part_of_the_map_that_blocks_the_path_replaces_it_at_once(
     graph: GraphHarness,
 ) -> None:
     world = World(graph).ready()
+    world.begin_updates()
     world.send(8, 4)
     graph.run_for(0.7)
     fill(world.occupancy, world.spec, (5, 5.2), (3, 5))
@@ -295,6 +296,7 @@ def test_parts_that_are_older_or_outside_leave_the_map(graph: GraphHarness) -> N
     world.send_part(window)  # before any map
     world.ready()
     sent_ns = graph.now_ns
+    world.begin_updates()
     world.send(8, 4)
     graph.run_for(0.7)
     fill(world.occupancy, world.spec, (5, 5.2), (0, 8))
@@ -305,14 +307,18 @@ def test_parts_that_are_older_or_outside_leave_the_map(graph: GraphHarness) -> N
     graph.run_for(0.3)
     assert world.message == "following"
     assert graph.now_ns > sent_ns
-    world.send_part(whole)
+    world.send_part(whole)  # of a map that the planner does not have
     graph.run_for(0.3)
+    assert world.message == "following"
+    world.send_map(stamp_ns=world.sent_ns)
+    graph.run_for(0.5)
     assert world.message == "no_path"
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_parts_give_the_same_grid_as_whole_maps(graph: GraphHarness, seed: int) -> None:
     world = World(graph).ready()
+    world.begin_updates()
     rng = np.random.default_rng(seed)
     world.send(8, 4)
     for _ in range(6):

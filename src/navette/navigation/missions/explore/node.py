@@ -12,14 +12,12 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.action_msgs.msg import GoalStatus
 from navette.msgs.geometry_msgs.msg import PoseStamped, Quaternion
 from navette.msgs.nav2_msgs.action import NavigateToPose
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.navigation.grids import grid_from_message
-from navette.navigation.grids.checks import check_frame
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.grids import MapPart, ReceivedMap
 from navette.navigation.missions.explore.frontiers import (
     Exploration,
     Frontier,
@@ -27,9 +25,13 @@ from navette.navigation.missions.explore.frontiers import (
     is_open,
 )
 from navette.navigation.missions.explore.params import ExplorerParams
+from navette.navigation.servers.map_reader_node import (
+    MAP_UPDATES_INPUT,
+    MapReaderNode,
+)
 from navette.runtime.action import ActionClient
 from navette.runtime.stage.odometry import PoseTracker
-from navette.runtime.stage.stage_node import Input, StageNode
+from navette.runtime.stage.stage_node import Input
 from navette.runtime.time import ns_to_stamp
 
 COMPLETE = "complete"
@@ -83,12 +85,13 @@ class ExplorationReport:
         return json.dumps(values)
 
 
-class ExplorerNode(StageNode):
+class ExplorerNode(MapReaderNode):
     """Send goals at frontiers until the map is complete."""
 
     PARAMS = ExplorerParams
     INPUTS = (
         Input.of(topics.MAP, "the map whose frontiers are explored", callback="on_map"),
+        MAP_UPDATES_INPUT,
         Input.of(
             topics.ODOMETRY,
             "position of the robot",
@@ -97,9 +100,11 @@ class ExplorerNode(StageNode):
         ),
     )
 
+    params: ExplorerParams
+
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("explorer", **kwargs)
-        params: ExplorerParams = self.params
+        params = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         self._client = ActionClient(self, NavigateToPose, "navigate_to_pose")
         self.report = ExplorationReport()
@@ -107,7 +112,6 @@ class ExplorerNode(StageNode):
         self.on_done: Callable[[], None] | None = None
         #: Called when a goal is sent.
         self.on_goal: Callable[[Frontier, ExplorationReport], None] | None = None
-        self._map: OccupancyGrid | None = None
         self._maps_without_frontier = 0
         self._started_ns: int | None = None
         self._created_ns = self._now_ns
@@ -125,10 +129,10 @@ class ExplorerNode(StageNode):
     def done(self) -> bool:
         return bool(self.report.reason)
 
-    def on_map(self, msg: OccupancyGrid) -> None:
+    def on_new_map(self, part: MapPart | None) -> None:
         """Choose the next goal if there is none or its frontier has been seen."""
-        check_frame("map", msg.header.frame_id, self.params.map_frame)
-        self._map = msg
+        assert self._map is not None, "a map has arrived"
+        self._map.update(part)
         if self._started_ns is None:
             self._started_ns = self._now_ns
         target = self._target
@@ -161,6 +165,10 @@ class ExplorerNode(StageNode):
     _handle: Any = None
 
     @property
+    def _map(self) -> ReceivedMap | None:
+        return self._maps.map
+
+    @property
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
 
@@ -178,20 +186,15 @@ class ExplorerNode(StageNode):
 
     def _is_open(self, target: Frontier) -> bool:
         assert self._map is not None, "a target comes from a map"
-        cells, spec = grid_from_message(self._map)
-        return is_open(cells, spec, target, self.params.frontier)
+        return is_open(self._map.cells, self._map.spec, target, self.params.frontier)
 
     def _choose(self) -> None:
         """Send the goal of the best frontier, or end."""
         if self.done or self._position is None or self._map is None:
             return
-        try:
-            cells, spec = grid_from_message(self._map)
-        except InvalidValueError as error:
-            raise InvalidInputError("out_of_range", str(error)) from None
         found = explore(
-            cells,
-            spec,
+            self._map.cells,
+            self._map.spec,
             self._position,
             self.params.frontier,
             failed=self._failed,
