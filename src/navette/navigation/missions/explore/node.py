@@ -4,6 +4,9 @@ The node sends goals of ``navigate_to_pose`` and replaces the goal as soon as it
 frontier has been seen. Exploration ends with a reason: ``complete`` (no frontier is
 left), ``unreachable`` (the remaining ones cannot be driven to), ``no_map``,
 ``no_server``, ``canceled`` (someone cancelled or replaced a goal).
+
+Searches for frontiers run in a worker: with the system clock the callbacks of the node
+continue meanwhile.
 """
 
 import json
@@ -33,6 +36,7 @@ from navette.runtime.action import ActionClient
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input
 from navette.runtime.time import ns_to_stamp
+from navette.runtime.worker import Worker
 
 COMPLETE = "complete"
 UNREACHABLE = "unreachable"
@@ -123,6 +127,8 @@ class ExplorerNode(MapReaderNode):
         self._visited: list[Frontier] = []
         self._failures = 0
         self._has_retried = False
+        self._worker = Worker(self)
+        self._is_choosing = False
         self.create_timer(_PERIOD_S, self._check)
 
     @property
@@ -162,6 +168,11 @@ class ExplorerNode(MapReaderNode):
         if self.on_done is not None:
             self.on_done()
 
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        self._worker.close()
+        super().destroy_node()
+
     _handle: Any = None
 
     @property
@@ -189,17 +200,34 @@ class ExplorerNode(MapReaderNode):
         return is_open(self._map.cells, self._map.spec, target, self.params.frontier)
 
     def _choose(self) -> None:
-        """Send the goal of the best frontier, or end."""
+        """Search for frontiers, unless that is under way, and go on with the result."""
         if self.done or self._position is None or self._map is None:
             return
-        found = explore(
-            self._map.cells,
-            self._map.spec,
-            self._position,
-            self.params.frontier,
-            failed=self._failed,
-            visited=self._visited,
-        )
+        if self._is_choosing:
+            return
+        self._is_choosing = True
+        here, cells, spec = self._position, self._map.cells, self._map.spec
+        failed, visited = tuple(self._failed), tuple(self._visited)
+
+        def search() -> Exploration:
+            return explore(
+                cells, spec, here, self.params.frontier, failed=failed, visited=visited
+            )
+
+        def use(found: Exploration) -> None:
+            self._is_choosing = False
+            if (failed, visited) == (tuple(self._failed), tuple(self._visited)):
+                self._use(found)
+            else:
+                self._choose()  # a goal ended meanwhile
+
+        self._map.share()
+        self._worker.run(search, use)
+
+    def _use(self, found: Exploration) -> None:
+        """Send the goal of the best frontier, or end."""
+        if self.done:
+            return
         self._note(found)
         if found.frontiers:
             self._maps_without_frontier = 0
