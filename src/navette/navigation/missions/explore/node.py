@@ -200,7 +200,7 @@ class ExplorerNode(MapReaderNode):
         return is_open(self._map.cells, self._map.spec, target, self.params.frontier)
 
     def _choose(self) -> None:
-        """Search for frontiers, unless that is under way, and go on with the result."""
+        """Search for frontiers, unless that is under way, and use the result."""
         if self.done or self._position is None or self._map is None:
             return
         if self._is_choosing:
