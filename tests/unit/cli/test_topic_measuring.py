@@ -1,7 +1,7 @@
 """navette topic hz, bw, delay: figures of known series, text as ros2 prints it."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import click
@@ -32,7 +32,6 @@ from navette.runtime import (
     Node,
     ReliabilityPolicy,
     SystemClock,
-    VirtualClock,
 )
 from navette.runtime.time import ns_to_stamp, stamp_to_ns
 
@@ -44,14 +43,6 @@ DELAY = {
     "needs_header": True,
     "value": lambda message: stamp_to_ns(message.header.stamp),
 }
-
-
-@pytest.fixture
-def talker() -> Iterator[Node]:
-    with Context(clock=VirtualClock()) as context:
-        node = Node("talker", context=context, start_parameter_services=False)
-        Executor(context=context).add_node(node)
-        yield node
 
 
 def publish_each(
