@@ -13,7 +13,12 @@ from navette.navigation.localization.ekf import (
     OrderedEkf,
     PlanarEkf,
 )
-from navette.navigation.localization.ekf.measurement import expected, expected_jacobian
+from navette.navigation.localization.ekf.kalman import correct, predict
+from navette.navigation.localization.ekf.measurement import (
+    expected,
+    expected_jacobian,
+    innovation,
+)
 from navette.navigation.localization.ekf.state import (
     SIZE,
     VX,
@@ -22,6 +27,7 @@ from navette.navigation.localization.ekf.state import (
     YAW,
     X,
     Y,
+    is_covariance,
     predicted,
     predicted_jacobian,
 )
@@ -89,6 +95,44 @@ def test_the_covariance_stays_symmetric_and_positive(seed: int) -> None:
         assert values[0] >= -1e-12 * values[-1]
         assert np.all(np.isfinite(ekf.snapshot.state))
         assert abs(ekf.snapshot.state[YAW]) <= math.pi
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(1e-3, 2.0))
+def test_the_compiled_steps_match_their_formulas(seed: int, dt: float) -> None:
+    rng = np.random.default_rng(seed)
+    state, root = rng.normal(size=SIZE), rng.normal(size=(2, SIZE, SIZE))
+    P, Q = root[0] @ root[0].T, root[1] @ root[1].T
+    F, half = predicted_jacobian(state, dt), predicted_jacobian(state, dt / 2)
+    noise = dt / 6 * (Q + 4 * half @ Q @ half.T + F @ Q @ F.T)
+    _, later = predict(state, P, Q, dt, False)
+    np.testing.assert_allclose(later, F @ P @ F.T + noise, rtol=1e-9, atol=1e-9)
+
+    seen = random_measurement(rng, 0)
+    d, H = innovation(seen, state), expected_jacobian(seen, state)
+    S = H @ P @ H.T + seen.covariance
+    K = np.linalg.solve(S, H @ P).T
+    squared, difference, spread, corrected, covariance = correct(
+        state, P, seen.rows, seen.values, seen.covariance, seen.lever
+    )
+    tolerance = {"rtol": 1e-6, "atol": 1e-6 * np.linalg.cond(S) ** 0.5}
+    np.testing.assert_array_equal(difference, d)
+    np.testing.assert_allclose(spread, S)
+    np.testing.assert_allclose(squared, d @ np.linalg.solve(S, d), **tolerance)
+    moved = corrected - (state + K @ d)
+    moved[YAW] = math.remainder(moved[YAW], math.tau)
+    np.testing.assert_allclose(moved, 0.0, **tolerance)
+    np.testing.assert_allclose(covariance, P - K @ H @ P, **tolerance)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, SIZE))
+def test_a_covariance_has_no_negative_eigenvalue(seed: int, size: int) -> None:
+    rng = np.random.default_rng(seed)
+    axes = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    values = rng.choice([0.0, 1e-3, 1.0, 1e3], size) * 10.0 ** rng.integers(-9, 9)
+    assert is_covariance(axes * values @ axes.T)
+    largest = max(values.max(), 1e-9)
+    values[rng.integers(size)] = -1e-3 * largest
+    assert not is_covariance(axes * values @ axes.T)
 
 
 wild = st.floats(allow_nan=False, allow_infinity=False)

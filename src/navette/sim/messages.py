@@ -175,7 +175,9 @@ def imu_message(
 
 
 def _diagonal(stddev: float) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
-    return (np.eye(3) * stddev**2).ravel()
+    covariance = np.zeros(9)
+    covariance[::4] = stddev**2
+    return covariance
 
 
 def image_message(pixels: Pixels, stamp_ns: int, frame: str) -> Image:

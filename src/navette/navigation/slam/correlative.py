@@ -146,7 +146,7 @@ def _search_kernel(
                 )
 
 
-@kernel
+@kernel(allocates=False)
 def _is_left_out(left_out: NDArray[np.float64], found: NDArray[np.int32]) -> bool:
     turn = _turn_of(found[0])
     for i in range(left_out.shape[0]):
@@ -182,7 +182,7 @@ def _turned(
     return cols, rows
 
 
-@kernel
+@kernel(allocates=False)
 def _turn_of(k: int) -> int:
     """Return the k-th angle in steps, from the centre outwards: 0, 1, −1, 2, …"""
     return (k + 1) // 2 if k % 2 else -(k // 2)
@@ -224,7 +224,7 @@ def _branch(
     return depth
 
 
-@kernel
+@kernel(allocates=False)
 def _sum(
     level: NDArray[np.uint8],
     cols: NDArray[np.int32],

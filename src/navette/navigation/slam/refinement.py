@@ -181,7 +181,7 @@ def sum_equations(
     quality[1] = math.sqrt(squares / max(1, count))
 
 
-@kernel
+@kernel(allocates=False)
 def _remove_normal_noise(information: Matrix3, gradient: NDArray[np.float64]) -> None:
     """Remove what the noise of the normals seems to measure, in the weakest direction.
 
@@ -212,7 +212,7 @@ def _remove_normal_noise(information: Matrix3, gradient: NDArray[np.float64]) ->
     gradient[1] -= y * along
 
 
-@kernel
+@kernel(allocates=False)
 def _add(
     information: Matrix3,
     gradient: NDArray[np.float64],
@@ -242,7 +242,7 @@ def _add(
     gradient[2] += w * j2 * error
 
 
-@kernel
+@kernel(allocates=False)
 def surface_near(
     surface: PointMap,
     x: float,
@@ -293,7 +293,7 @@ def surface_near(
     return 1
 
 
-@kernel
+@kernel(allocates=False)
 def _solve(
     matrix: Matrix3, right: NDArray[np.float64], solution: NDArray[np.float64]
 ) -> bool:

@@ -93,12 +93,12 @@ def _points_kernel(beams: _Beams, base_T_sensor: NDArray[np.float64]) -> Points:
             echoes[i, 0], echoes[i, 1] = r * math.cos(angle), r * math.sin(angle)
             is_valid[i] = True
     cos, sin = math.cos(base_T_sensor[2]), math.sin(base_T_sensor[2])
-    points = np.empty((count, 4))
+    points, sums = np.empty((count, 4)), np.empty(6)
     size = 0
     for i in range(count):
         if not is_valid[i]:
             continue
-        nx, ny = _normal(echoes, is_valid, beams, i)
+        nx, ny = _normal(echoes, is_valid, beams, i, sums)
         if nx == 0.0 and ny == 0.0 and _is_behind(is_valid, beams, i):
             continue
         x, y = echoes[i, 0], echoes[i, 1]
@@ -110,13 +110,19 @@ def _points_kernel(beams: _Beams, base_T_sensor: NDArray[np.float64]) -> Points:
     return points[:size].copy()
 
 
-@kernel
+@kernel(allocates=False)
 def _normal(
-    echoes: NDArray[np.float64], is_valid: NDArray[np.bool_], beams: _Beams, i: int
+    echoes: NDArray[np.float64],
+    is_valid: NDArray[np.bool_],
+    beams: _Beams,
+    i: int,
+    sums: NDArray[np.float64],
 ) -> tuple[float, float]:
-    """Return the normal of the surface at echo i, towards the sensor, or (0, 0)."""
-    sums = np.zeros(6)
-    sums[5] = 1.0
+    """Return the normal of the surface at echo i, towards the sensor, or (0, 0).
+
+    ``sums`` (6,) is overwritten.
+    """
+    sums[:5], sums[5] = 0.0, 1.0
     _add_side(echoes, is_valid, beams, i, -1, sums)
     _add_side(echoes, is_valid, beams, i, 1, sums)
     count = sums[5]
@@ -138,7 +144,7 @@ def _normal(
     return nx, ny
 
 
-@kernel
+@kernel(allocates=False)
 def _is_behind(is_valid: NDArray[np.bool_], beams: _Beams, i: int) -> bool:
     """Whether a neighbouring beam ends before echo i.
 
@@ -157,7 +163,7 @@ def _is_behind(is_valid: NDArray[np.bool_], beams: _Beams, i: int) -> bool:
     return False
 
 
-@kernel
+@kernel(allocates=False)
 def _add_side(
     echoes: NDArray[np.float64],
     is_valid: NDArray[np.bool_],
@@ -172,21 +178,26 @@ def _add_side(
         j = i + side * step
         if not 0 <= j < beams.ranges.size or not is_valid[j]:
             return
-        gap = np.hypot(
-            echoes[j, 0] - echoes[before, 0], echoes[j, 1] - echoes[before, 1]
-        )
         near = min(beams.ranges[j], beams.ranges[before])
-        if gap > max(_LEAST_GAP_M, _STEEPEST * abs(beams.angle_increment) * near):
+        gap = max(_LEAST_GAP_M, _STEEPEST * abs(beams.angle_increment) * near)
+        if _squared(echoes, before, j) > gap * gap:
             return
-        away = np.hypot(echoes[j, 0] - echoes[i, 0], echoes[j, 1] - echoes[i, 1])
         # At least one beam on each side counts, however far apart the beams are.
-        if step > 1 and away > _SIDE_M:
+        if step > 1 and _squared(echoes, i, j) > _SIDE_M * _SIDE_M:
             return
         _add_echo(echoes, i, j, sums)
         before = j
 
 
-@kernel
+@kernel(allocates=False)
+def _squared(echoes: NDArray[np.float64], i: int, j: int) -> float:
+    """Return the squared distance of two echoes."""
+    dx, dy = echoes[j, 0] - echoes[i, 0], echoes[j, 1] - echoes[i, 1]
+    squared: float = dx * dx + dy * dy
+    return squared
+
+
+@kernel(allocates=False)
 def _add_echo(
     echoes: NDArray[np.float64], i: int, j: int, sums: NDArray[np.float64]
 ) -> None:

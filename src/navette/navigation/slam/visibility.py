@@ -93,7 +93,7 @@ def _compare_kernel(
     return supported, contradicted
 
 
-@kernel
+@kernel(allocates=False)
 def _sees_through(views: Views, k: int, x: float, y: float) -> bool:
     """Whether the three beams of view k around a point pass it by."""
     sensor = views.sensors[k]

@@ -3,9 +3,9 @@
     python -m navette.navigation.stack.kernel_part PART [later]
 
 The machine code is stored and the part noted as prepared; the program that starts this
-process then loads it. PART is
-``planning``, ``locating`` for SLAM and exploration, or ``driving`` for all the rest and
-a short drive. ``later`` leaves the processor to other processes.
+process then loads it. PART is ``planning``, ``locating`` for SLAM, the filter of its
+odometry and exploration, or ``driving`` for all the rest and a short drive. ``later``
+leaves the processor to other processes.
 """
 
 import os
@@ -58,10 +58,11 @@ def compile_driving() -> None:
 
 
 def compile_locating() -> None:
-    """Compile the kernels of SLAM and of exploration."""
+    """Compile the kernels of SLAM, of the filter of its odometry and of exploration."""
     from navette.navigation.slam.warm_up import warm_up
 
     warm_up()
+    _make("ekf", gps0="fix")
     _explore()
 
 
@@ -79,16 +80,25 @@ def _explore() -> None:
         raise RuntimeError("no frontier: kernels of exploration were not called")
 
 
-def _make(name: str) -> None:
+def _make(name: str, **parameters: str) -> None:
     """Create a node, which compiles its kernels, and destroy it."""
     from navette.navigation.stack.stack import node_class
-    from navette.runtime import Context, LoggingSeverity, Node, VirtualClock
+    from navette.runtime import (
+        Context,
+        LoggingSeverity,
+        Node,
+        Parameter,
+        VirtualClock,
+    )
 
     context = Context(clock=VirtualClock())
     context.init(args=[], console_level=LoggingSeverity.FATAL)
     try:
         kind: Callable[..., Node] = node_class(name)
-        kind(context=context)
+        overrides: list[Parameter[str]] = [
+            Parameter(key, value=value) for key, value in parameters.items()
+        ]
+        kind(context=context, parameter_overrides=overrides)
     finally:
         context.try_shutdown()
 

@@ -16,6 +16,7 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import Imu, NavSatFix
 from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.localization.ekf.kalman import are_finite, correct, predict
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.runtime import Parameter, ns_to_stamp
 from navette.runtime.testing import GraphHarness, Probe
@@ -216,6 +217,22 @@ def test_a_fix_is_the_position_of_the_antenna() -> None:
         graph.run_for(0.05)
         assert pose_of(estimates.last)[:2] == pytest.approx((99.5, 0.0), abs=0.01)
         assert any("gps0 not used: it has no fix" in log.msg for log in logs.messages)
+
+
+def test_no_kernel_is_compiled_after_the_start() -> None:
+    def compiled() -> list[int]:
+        return [len(kernel.signatures) for kernel in (predict, correct, are_finite)]
+
+    with GraphHarness() as graph:
+        placed(graph, "antenna", Transform3((0.5, 0.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
+        _, estimates = started(graph, **WHEELS, gps0="/fix")
+        at_the_start = compiled()
+        graph.publish("/wheels", wheels(1.0, 0.5))
+        graph.publish("/fix", fix(1.1, 48.0, 11.0))
+        graph.run_for(0.2)
+        assert estimates.count > 0
+        assert min(at_the_start) >= 1
+        assert compiled() == at_the_start
 
 
 def pose(stamp_s: float, x: float, y: float, yaw: float, frame: str = "odom"):

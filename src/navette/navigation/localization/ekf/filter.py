@@ -1,10 +1,10 @@
 """An extended Kalman filter in the plane.
 
-Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), table 3.3, with the covariance
-updated in Joseph's form (Bucy and Joseph 1968), which keeps it symmetric and positive
-for any rounding of the gain.
+Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), table 3.3; the steps are in
+:mod:`~navette.navigation.localization.ekf.kalman`.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -12,21 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from navette.geometry import Pose2
-from navette.navigation.localization.ekf.measurement import (
-    Measurement,
-    expected_jacobian,
-    innovation,
-)
+from navette.navigation.localization.ekf.kalman import are_finite, correct, predict
+from navette.navigation.localization.ekf.measurement import Measurement
 from navette.navigation.localization.ekf.state import (
     SIZE,
-    VX,
-    VYAW,
     YAW,
     Array,
     X,
     Y,
-    predicted,
-    predicted_jacobian,
     wrapped,
 )
 
@@ -78,9 +71,7 @@ class FilterSnapshot:
 
     @property
     def is_finite(self) -> bool:
-        return bool(
-            np.isfinite(self.state).all() and np.isfinite(self.covariance).all()
-        )
+        return are_finite(self.state, self.covariance)
 
 
 class PlanarEkf:
@@ -117,6 +108,12 @@ class PlanarEkf:
         self.initial_state = np.zeros(SIZE) if initial_state is None else initial_state
         self.reset()
 
+    def warm_up(self) -> None:
+        """Compile the kernels, which takes seconds on the very first run."""
+        trial = PlanarEkf(self.process_noise, self.initial_covariance)
+        for stamp_ns in (0, 1):
+            trial.step(Measurement("", stamp_ns, (X,), np.zeros(1), np.eye(1)))
+
     def reset(self) -> None:
         """Return to the initial state."""
         self.innovation: Innovation | None = None
@@ -141,8 +138,7 @@ class PlanarEkf:
         now = self.snapshot
         if now.stamp_ns is None:
             return None
-        with np.errstate(all="ignore"):
-            later = self._predicted_to(max(stamp_ns, now.stamp_ns))
+        later = self._predicted_to(max(stamp_ns, now.stamp_ns))
         if not later.is_finite:
             return None
         return Estimate(max(stamp_ns, now.stamp_ns), later.state, later.covariance)
@@ -166,40 +162,32 @@ class PlanarEkf:
         :class:`~navette.navigation.localization.ekf.history.OrderedEkf`.
         """
         before = self.snapshot
-        with np.errstate(all="ignore"):  # the result is checked below
-            try:
-                self.snapshot = self._predicted_to(measurement.stamp_ns)
-                result = self._correct(measurement)
-            except np.linalg.LinAlgError:
-                result = Fused.UNSOUND
+        self.snapshot = self._predicted_to(measurement.stamp_ns)
+        result = self._correct(measurement)
         if result is Fused.UNSOUND or not self.snapshot.is_finite:
             self.snapshot = before
             return Fused.UNSOUND
         return result
 
     def _correct(self, measurement: Measurement) -> Fused:
-        first_seen = self.snapshot.unseen.intersection(measurement.indices)
-        state, prior = self.snapshot.state, self._prior(first_seen)
-        difference = innovation(measurement, state)
-        H = expected_jacobian(measurement, state)
-        S = H @ prior @ H.T + measurement.covariance
-        weighted = np.linalg.solve(S, np.column_stack([difference, H @ prior]))
-        if not np.all(np.isfinite(weighted)):
+        now = self.snapshot
+        first_seen = now.unseen.intersection(measurement.indices)
+        squared, difference, S, state, covariance = correct(
+            now.state,
+            self._prior(first_seen),
+            measurement.rows,
+            measurement.values,
+            measurement.covariance,
+            measurement.lever,
+        )
+        if not math.isfinite(squared):
             return Fused.UNSOUND
-        distance = 0.0 if first_seen else float(difference @ weighted[:, 0])
-        self.innovation = Innovation(state, difference, S, distance)
+        distance = 0.0 if first_seen else squared
+        self.innovation = Innovation(now.state, difference, S, distance)
         if distance > measurement.threshold**2:
             return Fused.REJECTED
-        K = weighted[:, 1:].T
-        state = state + K @ difference
-        state[YAW] = wrapped(state[YAW])
-        kept = np.eye(SIZE) - K @ H
-        covariance = kept @ prior @ kept.T + K @ measurement.covariance @ K.T
         self.snapshot = FilterSnapshot(
-            measurement.stamp_ns,
-            state,
-            0.5 * (covariance + covariance.T),
-            self.snapshot.unseen - first_seen,
+            measurement.stamp_ns, state, covariance, now.unseen - first_seen
         )
         return Fused.USED
 
@@ -213,22 +201,6 @@ class PlanarEkf:
         covariance[rows, rows] = _UNKNOWN
         return covariance
 
-    def _noise(self, state: Array, dt: float) -> Array:
-        """Return the noise of the motion during ``dt``, (8, 8).
-
-        The integral ∫ F(τ) Q F(τ)ᵀ dτ by Simpson's rule (exact for velocities:
-        Bar-Shalom, Li, Kirubarajan 2001, section 6.2). The noise of a velocity
-        correlates with that of the pose, so that the next measured velocity also
-        corrects the pose of this step; otherwise a turn would be integrated late.
-        """
-        Q = self.process_noise
-        if self.scales_noise:
-            Q = Q.copy()
-            Q[: YAW + 1, : YAW + 1] *= float(np.sum(np.square(state[VX : VYAW + 1])))
-        half, whole = predicted_jacobian(state, dt / 2), predicted_jacobian(state, dt)
-        noise: Array = dt / 6 * (Q + 4 * half @ Q @ half.T + whole @ Q @ whole.T)
-        return noise
-
     def _predicted_to(self, stamp_ns: int) -> FilterSnapshot:
         before = self.snapshot
         if before.stamp_ns is None:
@@ -238,11 +210,7 @@ class PlanarEkf:
         dt = (stamp_ns - before.stamp_ns) * 1e-9
         if dt <= 0.0:
             return before
-        F = predicted_jacobian(before.state, dt)
-        covariance = F @ before.covariance @ F.T + self._noise(before.state, dt)
-        return FilterSnapshot(
-            stamp_ns,
-            predicted(before.state, dt),
-            0.5 * (covariance + covariance.T),
-            before.unseen,
+        state, covariance = predict(
+            before.state, before.covariance, self.process_noise, dt, self.scales_noise
         )
+        return FilterSnapshot(stamp_ns, state, covariance, before.unseen)

@@ -4,8 +4,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.navigation.localization.ekf.state import SIZE, YAW, Array, X, Y, wrapped
+
+Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +34,11 @@ class Measurement:
     """(x, y), m, in the base frame"""
 
     @property
+    def rows(self) -> Indices:
+        """The entries as an array."""
+        return np.array(self.indices, np.int64)
+
+    @property
     def is_position(self) -> bool:
         """Whether it measures x and y."""
         return self.indices[:2] == (X, Y)
@@ -37,30 +46,55 @@ class Measurement:
 
 def expected(measurement: Measurement, state: Array) -> Array:
     """Return the noise-free measurement (n,) in this state."""
-    full = state.copy()
-    lx, ly = measurement.lever
-    c, s = math.cos(state[YAW]), math.sin(state[YAW])
-    full[X] += c * lx - s * ly
-    full[Y] += s * lx + c * ly
-    seen: Array = full[list(measurement.indices)]
-    return seen
+    return expected_of(measurement.rows, measurement.lever, state)
 
 
 def expected_jacobian(measurement: Measurement, state: Array) -> Array:
     """Return ∂expected / ∂state (n, 8)."""
-    full = np.eye(SIZE)
-    lx, ly = measurement.lever
-    c, s = math.cos(state[YAW]), math.sin(state[YAW])
-    full[X, YAW] = -s * lx - c * ly
-    full[Y, YAW] = c * lx - s * ly
-    seen: Array = full[list(measurement.indices)]
-    return seen
+    return jacobian_of(measurement.rows, measurement.lever, state)
 
 
 def innovation(measurement: Measurement, state: Array) -> Array:
     """Return measured minus expected (n,), headings in [−π, π]."""
-    difference = measurement.values - expected(measurement, state)
-    if YAW in measurement.indices:
-        at = measurement.indices.index(YAW)
-        difference[at] = wrapped(difference[at])
+    return residual(measurement.rows, measurement.values, measurement.lever, state)
+
+
+@kernel
+def expected_of(rows: Indices, lever: tuple[float, float], state: Array) -> Array:
+    """Return :func:`expected` of a measurement's rows and lever."""
+    c, s = math.cos(state[YAW]), math.sin(state[YAW])
+    seen = np.empty(rows.size)
+    for i in range(rows.size):
+        seen[i] = state[rows[i]]
+        if rows[i] == X:
+            seen[i] += c * lever[0] - s * lever[1]
+        elif rows[i] == Y:
+            seen[i] += s * lever[0] + c * lever[1]
+    return seen
+
+
+@kernel
+def jacobian_of(rows: Indices, lever: tuple[float, float], state: Array) -> Array:
+    """Return :func:`expected_jacobian` of a measurement's rows and lever."""
+    c, s = math.cos(state[YAW]), math.sin(state[YAW])
+    jacobian = np.zeros((rows.size, SIZE))
+    for i in range(rows.size):
+        jacobian[i, rows[i]] = 1.0
+        if rows[i] == X:
+            jacobian[i, YAW] = -s * lever[0] - c * lever[1]
+        elif rows[i] == Y:
+            jacobian[i, YAW] = c * lever[0] - s * lever[1]
+    return jacobian
+
+
+@kernel
+def residual(
+    rows: Indices, values: Array, lever: tuple[float, float], state: Array
+) -> Array:
+    """Return :func:`innovation` of a measurement's rows, values and lever."""
+    difference = expected_of(rows, lever, state)
+    for i in range(rows.size):
+        difference[i] = values[i] - difference[i]
+        if rows[i] == YAW:
+            difference[i] = wrapped(difference[i])
     return difference

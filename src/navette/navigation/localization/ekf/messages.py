@@ -22,7 +22,7 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.navigation.localization.ekf.filter import Estimate
-from navette.navigation.localization.ekf.state import VX, VY, VYAW, YAW, Array, X, Y
+from navette.navigation.localization.ekf.state import VX, VY, VYAW, YAW, Array, X
 
 PLANAR_POSE = np.ix_([0, 1, 5], [0, 1, 5])
 
@@ -53,26 +53,26 @@ def odometry_message(
                 position=Point(x=x, y=y),
                 orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),
             ),
-            covariance=_spatial(estimate.covariance, [X, Y, YAW]),
+            covariance=_spatial(estimate.covariance, X),
         ),
         twist=TwistWithCovariance(
             twist=Twist(
                 linear=Vector3(x=float(state[VX]), y=float(state[VY])),
                 angular=Vector3(z=float(state[VYAW])),
             ),
-            covariance=_spatial(estimate.covariance, [VX, VY, VYAW]),
+            covariance=_spatial(estimate.covariance, VX),
         ),
     )
 
 
 def pose_of(estimate: Estimate) -> Pose2:
     """Return world_T_base."""
-    x, y, yaw = estimate.state[[X, Y, YAW]].tolist()
+    x, y, yaw = estimate.state[X : YAW + 1].tolist()
     return Pose2(x, y, yaw)
 
 
-def _spatial(covariance: Array, rows: list[int]) -> Array:
+def _spatial(covariance: Array, first: int) -> Array:
     """Return the covariance (36,) of a spatial pose or twist from three entries."""
     spatial = np.zeros((6, 6))
-    spatial[PLANAR_POSE] = covariance[np.ix_(rows, rows)]
+    spatial[PLANAR_POSE] = covariance[first : first + 3, first : first + 3]
     return spatial.ravel()

@@ -132,6 +132,7 @@ class EkfNode(StageNode):
             on_invalid=self.drop_input,
         )
         self._start()
+        self._filter.ekf.warm_up()
         self._timer = self.create_timer(1.0 / self.params.frequency_hz, self.on_timer)
 
     def inputs(self) -> tuple[Input, ...]:
@@ -342,8 +343,9 @@ class EkfNode(StageNode):
 
     def _judge(self, estimate: Estimate) -> None:
         """Report whether the filter is lost."""
-        variances = np.linalg.eigvalsh(estimate.covariance[np.ix_([X, Y], [X, Y])])
-        stddev_m = math.sqrt(max(0.0, float(variances[-1])))
+        (xx, xy), (_, yy) = estimate.covariance[:2, :2].tolist()
+        largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)  # eigenvalue
+        stddev_m = math.sqrt(max(0.0, largest))
         state = self._consistency.update(stddev_m, estimate.stamp_ns)
         cause = self._consistency.cause
         if cause and self._status.state != state and self.params.publish_status:
@@ -415,4 +417,4 @@ class EkfNode(StageNode):
             self.get_logger().warning(text)
 
     def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
+        return self.get_clock().now_ns

@@ -14,7 +14,6 @@ from navette.navigation.localization.ekf.state import (
     SPATIAL,
     VX,
     Array,
-    is_covariance,
 )
 
 # Used for a value without variance.
@@ -29,11 +28,6 @@ class Reading(NamedTuple):
     """(n,) x, y, yaw or vx, vy, vyaw or ax, ay; m, rad, s"""
     covariance: Array
     """(n, n)"""
-
-    @property
-    def is_valid(self) -> bool:
-        """Whether all values are finite and the covariance is valid."""
-        return bool(np.all(np.isfinite(self.values))) and is_covariance(self.covariance)
 
 
 @dataclass(frozen=True)
@@ -106,10 +100,10 @@ def measured(
     threshold: float,
 ) -> Measurement:
     """Return the chosen entries; ``first`` is the state entry of the first value."""
-    rows = [index - first for index in chosen]
-    covariance = reading.covariance[np.ix_(rows, rows)].copy()
-    diagonal = np.einsum("ii->i", covariance)
-    np.maximum(diagonal, LEAST_VARIANCE, out=diagonal)
+    rows = np.array(chosen) - first
+    covariance = reading.covariance[rows[:, None], rows]
+    for i in range(len(rows)):
+        covariance[i, i] = max(covariance[i, i], LEAST_VARIANCE)
     return Measurement(
         source, reading.stamp_ns, chosen, reading.values[rows], covariance, threshold
     )

@@ -12,7 +12,7 @@ import numpy as np
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Quaternion, Transform3, yaw_of
 from navette.geometry.geodesy import GeoPoint, LocalPlane
-from navette.geometry.se3 import multiply, rotate
+from navette.geometry.se3 import multiply, rotate, rotation_matrix
 from navette.msgs.geometry_msgs.msg import Pose
 from navette.msgs.sensor_msgs.msg import Imu, NavSatFix, NavSatStatus
 from navette.navigation.localization.ekf.measurement import Measurement
@@ -38,6 +38,7 @@ from navette.navigation.localization.ekf.state import (
     Array,
     X,
     Y,
+    is_covariance,
 )
 
 _LOG = logging.getLogger(__name__)
@@ -286,16 +287,14 @@ KINDS: dict[str, type[FilterInput]] = {
 
 
 def _check(reading: Reading) -> None:
-    if not np.all(np.isfinite(reading.values)):
+    values = reading.values.tolist()
+    if not all(map(math.isfinite, values)):
+        raise InvalidInputError("not_finite", f"{values} are not finite")
+    if max(map(abs, values)) > _LARGEST:
         raise InvalidInputError(
-            "not_finite", f"{reading.values.tolist()} are not finite"
+            "out_of_range", f"{values}; must be within ±{_LARGEST:g}"
         )
-    if np.any(np.abs(reading.values) > _LARGEST):
-        raise InvalidInputError(
-            "out_of_range",
-            f"{reading.values.tolist()}; must be within ±{_LARGEST:g}",
-        )
-    if not reading.is_valid:
+    if not is_covariance(reading.covariance):
         raise InvalidInputError(
             "invalid_covariance",
             f"its covariance {reading.covariance.tolist()} is not finite, not "
@@ -324,8 +323,6 @@ def _inverse(q: tuple[float, float, float, float]) -> Any:
 
 def _in_base(imu_R_base: Any, vector: Any, covariance: Any) -> tuple[Array, Array]:
     """Return a vector (3,) and its covariance (3, 3) along the base's axes."""
-    base_R_imu = _inverse(imu_R_base)
-    columns = [rotate(base_R_imu, axis) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-    R = np.array(columns, dtype=float).T
+    R = rotation_matrix(_inverse(imu_R_base))
     turned_covariance = R @ np.asarray(covariance, float).reshape(3, 3) @ R.T
     return R @ np.array([vector.x, vector.y, vector.z]), turned_covariance

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.files.kernels import kernel
 
 Array = NDArray[np.float64]
 
@@ -53,19 +54,51 @@ def is_covariance(matrix: Array) -> bool:
 
     Entries beyond 1e18 count as not finite: their products would overflow.
     """
-    if not np.all(np.abs(matrix) <= _LARGEST_VARIANCE):
-        return False
-    scale = float(np.abs(matrix).max(initial=0.0))
-    if not np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-6 * scale):
-        return False
-    return bool(np.linalg.eigvalsh(matrix)[0] >= -1e-6 * scale)
+    return bool(_is_covariance(np.ascontiguousarray(matrix, np.float64)))
 
 
+@kernel
+def _is_covariance(matrix: Array) -> bool:
+    size, scale = matrix.shape[0], 0.0
+    for i in range(size):
+        for j in range(size):
+            if not abs(matrix[i, j]) <= _LARGEST_VARIANCE:
+                return False
+            scale = max(scale, abs(matrix[i, j]))
+    tolerance = 1e-6 * scale
+    raised = matrix.copy()
+    for i in range(size):
+        raised[i, i] += tolerance
+        for j in range(i):
+            if abs(matrix[i, j] - matrix[j, i]) > tolerance:
+                return False
+    return scale == 0.0 or bool(decompose(raised))
+
+
+@kernel(allocates=False)
+def decompose(matrix: Array) -> bool:
+    """Write Cholesky's factor over the lower half; return whether there is one."""
+    for j in range(matrix.shape[0]):
+        for i in range(j, matrix.shape[0]):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            if i > j:
+                matrix[i, j] /= matrix[j, j]
+            elif matrix[j, j] > 0.0 and math.isfinite(matrix[j, j]):
+                matrix[j, j] = math.sqrt(matrix[j, j])
+            else:
+                return False
+    return True
+
+
+@kernel(allocates=False)
 def wrapped(angle: float) -> float:
     """Return the angle in [−π, π]; NaN for an infinite one."""
-    return math.remainder(angle, math.tau) if math.isfinite(angle) else math.nan
+    turns: float = np.floor(angle / math.tau + 0.5)
+    return angle - math.tau * turns
 
 
+@kernel
 def predicted(state: Array, dt: float) -> Array:
     """Return the state ``dt`` seconds later at constant acceleration and turn rate.
 
@@ -84,6 +117,7 @@ def predicted(state: Array, dt: float) -> Array:
     return later
 
 
+@kernel
 def predicted_jacobian(state: Array, dt: float) -> Array:
     """Return ∂predicted / ∂state (8, 8)."""
     c, s = math.cos(state[YAW]), math.sin(state[YAW])
@@ -91,21 +125,10 @@ def predicted_jacobian(state: Array, dt: float) -> Array:
     left = state[VY] * dt + 0.5 * state[AY] * dt * dt
     half = 0.5 * dt * dt
     jacobian = np.eye(SIZE)
-    jacobian[X, [YAW, VX, VY, AX, AY]] = (
-        -s * forward - c * left,
-        c * dt,
-        -s * dt,
-        c * half,
-        -s * half,
-    )
-    jacobian[Y, [YAW, VX, VY, AX, AY]] = (
-        c * forward - s * left,
-        s * dt,
-        c * dt,
-        s * half,
-        c * half,
-    )
-    jacobian[YAW, VYAW] = dt
-    jacobian[VX, AX] = dt
-    jacobian[VY, AY] = dt
+    jacobian[X, YAW], jacobian[Y, YAW] = -s * forward - c * left, c * forward - s * left
+    jacobian[X, VX], jacobian[X, VY] = c * dt, -s * dt
+    jacobian[Y, VX], jacobian[Y, VY] = s * dt, c * dt
+    jacobian[X, AX], jacobian[X, AY] = c * half, -s * half
+    jacobian[Y, AX], jacobian[Y, AY] = s * half, c * half
+    jacobian[YAW, VYAW] = jacobian[VX, AX] = jacobian[VY, AY] = dt
     return jacobian
