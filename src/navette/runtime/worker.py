@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Long computations of a node that do not hold the event loop."""
 
+import functools
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, TypeVar
 
+from navette.runtime.future import Future as LoopFuture
 from navette.runtime.node import Node
 
 T = TypeVar("T")
@@ -64,6 +66,21 @@ class Worker:
                 end()
         else:
             self._call_when_done(future, end)
+
+    def submit(self, compute: Callable[[], T]) -> "LoopFuture[T]":
+        """Return the result of ``compute``, or its exception, to be awaited."""
+        result: LoopFuture[T] = LoopFuture()
+
+        def caught() -> Callable[[], None]:
+            try:
+                value = compute()
+            except Exception as error:
+                # The name of the clause ends with it.
+                return functools.partial(result.set_exception, error)
+            return lambda: result.set_result(value)
+
+        self.run(caught, lambda end: end())
+        return result
 
     def _call_when_done(self, future: "Future[T]", end: Callable[[], None]) -> None:
         future.add_done_callback(

@@ -58,6 +58,22 @@ def test_a_failed_computation_fails_in_the_loop(graph: Graph) -> None:
         graph.run(lambda: graph.worker.run(fail, print), lambda: False)
 
 
+def test_a_coroutine_awaits_a_result_or_its_exception(graph: Graph) -> None:
+    def fail() -> None:
+        raise ValueError("no result")
+
+    async def compute() -> None:
+        graph.results.append(await graph.worker.submit(lambda: 7))
+        with pytest.raises(ValueError, match="no result"):
+            await graph.worker.submit(fail)
+        graph.results.append(threading.get_ident())
+
+    graph.run(
+        lambda: graph.executor.create_task(compute), lambda: len(graph.results) == 2
+    )
+    assert graph.results == [7, threading.get_ident()]
+
+
 @pytest.mark.parametrize("clock", [PacedClock, SystemClock])
 def test_calls_of_other_threads_run_meanwhile(clock: type[ContextClock]) -> None:
     graph = Graph(clock())

@@ -1,5 +1,6 @@
 """The cells of a map, from its image."""
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,8 @@ from navette.errors import FileFormatError
 from navette.geometry import Pose2
 from navette.geometry.map_files.description import MapDescription, read_description
 
-MAX_PIXELS = 16_000_000
+# The largest map of the map memory: 500 m wide at 5 cm.
+MAX_PIXELS = 10_000**2
 _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 100
 _FORMATS = ("PPM", "PNG", "BMP")  # Pillow's names; PPM includes PGM and PBM
 
@@ -75,6 +77,13 @@ def _table(described: MapDescription, white: int) -> NDArray[np.int8]:
     return cells
 
 
+def _opened(path: Path) -> Image.Image:
+    with warnings.catch_warnings():
+        # Pillow warns of fewer pixels than are allowed here.
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        return Image.open(path, formats=_FORMATS)
+
+
 def _pixels(
     described: MapDescription,
 ) -> tuple[NDArray[np.integer[Any]], int, NDArray[np.uint8] | None]:
@@ -83,7 +92,7 @@ def _pixels(
     The opacities are None if all pixels are opaque.
     """
     try:
-        with Image.open(described.image, formats=_FORMATS) as image:
+        with _opened(described.image) as image:
             if image.width * image.height > MAX_PIXELS:
                 raise FileFormatError(
                     described.path,

@@ -27,7 +27,7 @@ from navette.navigation.grids.unseen import (
     StartArea,
     unseen_points,
 )
-from navette.navigation.grids.windows import CellWindow
+from navette.navigation.grids.windows import NO_CELLS, CellWindow
 
 # Half the edge of the square in which it matters that an earlier map was seen; the
 # robot drives a little before the next map.
@@ -94,7 +94,10 @@ class ObstacleTracker:
     def reset(self) -> None:
         """Forget all costmaps and the map."""
         self._map = MapObstacles()
-        self._seen: Layer | None = None  # what any map has shown
+        self._newest: Layer | None = None  # the map
+        # What any map has shown, in these cells of the newest.
+        self._seen: Layer | None = None
+        self._seen_window = NO_CELLS
         self._hits = HitPoints()
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._placed: OccupancyGrid | None = None  # newest that was placed
@@ -126,16 +129,17 @@ class ObstacleTracker:
             known.share()  # what the map loses has been seen nevertheless
         known.update(part)
         self._map.receive(known.cells, known.spec, stamp_ns)
-        self._seen = _seen_also(Layer(known.cells, known.spec), before, near)
+        self._newest = Layer(known.cells, known.spec)
+        self._seen = _seen_also(self._newest, before, near)
+        is_whole = self._seen is self._newest
+        self._seen_window = CellWindow.whole(known.spec.shape) if is_whole else near
 
     def _near_robot(self, spec: GridSpec, now_ns: int) -> CellWindow:
         """Return the cells near the robot; all while its pose is not known."""
         robot = self._poses.predicted_now(now_ns)
         if robot is None:
             return CellWindow.whole(spec.shape)
-        row, column = spec.cell_of(robot.x, robot.y)
-        here = CellWindow(row, row + 1, column, column + 1)
-        return here.grown(math.ceil(_NEAR_M / spec.resolution), spec.shape)
+        return _cells_around(robot, _NEAR_M, spec)
 
     def relocate(self) -> None:
         """Place the newest costmap again: the robot's pose in the map has jumped.
@@ -216,11 +220,22 @@ class ObstacleTracker:
 
         What a request has cleared from the map has been seen nevertheless.
         """
-        layers = (here,) if self._seen is None else (self._seen, here)
+        seen = self._seen_around(around, min(reach_m, FARTHEST_M))
+        layers = (here,) if seen is None else (seen, here)
         first = self._poses.first
         assert first is not None, "the pose is known"
         start = self._start._replace(map_T_base=first)
         return unseen_points(layers, start, around, reach_m)
+
+    def _seen_around(self, around: Pose2, reach_m: float) -> Layer | None:
+        """Return what any map has shown, or only the newest one.
+
+        The latter if the robot has left the cells that it was near at that map.
+        """
+        if self._newest is None or self._seen is None:
+            return None
+        needed = _cells_around(around, reach_m, self._newest.spec)
+        return self._seen if self._seen_window.contains(needed) else self._newest
 
     def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
         """Return map_T_frame of the costmap at its stamp."""
@@ -244,19 +259,25 @@ def _loses(part: MapPart, cells: Cells, near: CellWindow) -> bool:
     return lost
 
 
+def _cells_around(pose: Pose2, reach_m: float, spec: GridSpec) -> CellWindow:
+    row, column = spec.cell_of(pose.x, pose.y)
+    here = CellWindow(row, row + 1, column, column + 1)
+    return here.grown(math.ceil(reach_m / spec.resolution), spec.shape)
+
+
 def _seen_also(now: Layer, before: Layer | None, near: CellWindow) -> Layer:
-    """Return a layer whose cells in a window are known where they are in one of two."""
+    """Return a layer whose cells in a window are known where they are in one of two.
+
+    The layer of now if it shows all of them, otherwise one of the window only.
+    """
     if before is None:
         return now
     shift = _shift_of_cells(now.spec, before.spec)
     if shift is not None and not _has_lost(now.cells, before.cells, near, *shift):
         return now
-    cells = now.cells.copy()
-    if before.spec == now.spec:
-        np.copyto(cells, before.cells, where=cells == UNKNOWN)
-    else:
-        merge(cells, now.spec, before.cells, before.spec)
-    return Layer(cells, now.spec)
+    seen = Layer(now.cells[near.slices].copy(), near.spec_in(now.spec))
+    merge(*seen, *before, "max")
+    return seen
 
 
 def _shift_of_cells(spec: GridSpec, other: GridSpec) -> tuple[int, int] | None:

@@ -86,6 +86,10 @@ class CellWindow(NamedTuple):
             max(first_column, min(self.last_column + cells, shape[1])),
         )
 
+    def contains(self, other: "CellWindow") -> bool:
+        """Return whether all cells of another window are in this one."""
+        return self.union(other) == self
+
     def union(self, other: "CellWindow") -> "CellWindow":
         """Return the smallest window that contains both."""
         if self.is_empty or other.is_empty:

@@ -1,6 +1,7 @@
 """The map: all costmaps so far, fused."""
 
 import math
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -117,6 +118,13 @@ class MapMemory:
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
             self._log_odds = self._evidence_of(self._cells)
+
+    def emptied(self) -> "MapMemory":
+        """Return another memory as this one is after :meth:`reset`."""
+        other = copy(self)
+        other._own = own_mapping(self.params)
+        other.reset()
+        return other
 
     def load(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map by (H, W) and its geometry, also for :meth:`reset`."""

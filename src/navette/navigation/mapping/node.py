@@ -8,7 +8,6 @@ or transforms they are dropped and the map does not change.
 import dataclasses
 import math
 import pathlib
-from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -50,12 +49,14 @@ from navette.navigation.mapping.memory import (
 )
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
+from navette.navigation.mapping.rebuilding import RebuildingMemory
 from navette.navigation.mapping.servers.map_services import MapServices
 from navette.navigation.servers.costmap_services import CostmapServices
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_of
+from navette.runtime.worker import Worker
 
 # A stamp this much older than the last fused one belongs to a new run: the simulation
 # was reset, or a bag starts again.
@@ -149,6 +150,7 @@ class MapMemoryNode(StageNode):
         self._trajectories = next(
             each for each in self.subscriptions if each.topic_name == trajectory
         )
+        self.worker = Worker(self)
         self._start()
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
@@ -203,7 +205,7 @@ class MapMemoryNode(StageNode):
         ]
         corrected = self._keyframes.correct(trajectory)
         if corrected:
-            self._rebuild(corrected)
+            self._rebuilding.rebuild(corrected)
 
     def on_timer(self) -> None:
         """Fuse the newest costmap if the robot moved far enough."""
@@ -228,10 +230,12 @@ class MapMemoryNode(StageNode):
         if self.params.shape() != old.shape():
             if self.params.frames() != old.frames():
                 self._tracker = self._new_tracker()
+            self._rebuilding.drop()
             self._start()
         else:
-            self._memory.configure(self.params)
-            self._gate.params = self.params
+            params = self.params
+            self._rebuilding.change(lambda memory: memory.configure(params))
+            self._gate.params = params
 
     def on_time_jump(self) -> None:
         """Reset the map."""
@@ -239,17 +243,29 @@ class MapMemoryNode(StageNode):
         self._map_ns = -1
         self._restart()
 
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        self.worker.close()
+        super().destroy_node()
+
     def _new_tracker(self) -> PoseTracker:
         return PoseTracker(self, self.params.base_frame, self.params.map_frame)
 
     def _start(self) -> None:
-        self._memory = MapMemory(self.params)
+        self._rebuilding = RebuildingMemory(
+            MapMemory(self.params), self.worker, on_rebuilt=self._on_rebuilt
+        )
         self._gate = FusionGate(self.params)
         self._restart()
+
+    @property
+    def _memory(self) -> MapMemory:
+        return self._rebuilding.memory
 
     def _restart(self) -> None:
         self._odometry = None
         self._moving = MovingDiscs(NO_DISCS, 0)
+        self._rebuilding.drop()
         self._memory.reset()
         self._gate.reset()
         self._waiting = PlacementQueue[OccupancyGrid](
@@ -274,25 +290,22 @@ class MapMemoryNode(StageNode):
         newest, self._newest = self._newest, None
         pose = newest and self._tracker.pose_at(newest.costmap.stamp_ns)
         if newest is None or pose is None:
-            self._rebuild([])
+            self._rebuilding.rebuild([])
             return
         before = newest.costmap.map_T_base
         self._newest = newest._replace(
             costmap=replaced(newest.costmap, pose),
             map_T_sensor=pose @ before.inverse() @ newest.map_T_sensor,
         )
-        self._rebuild([replaced(self._with_hits(newest), pose)])
+        self._rebuilding.rebuild([replaced(self._with_hits(newest), pose)])
 
     @property
     def _is_corrected(self) -> bool:
         """Whether a trajectory is published, so that costmaps are kept for it."""
         return self._trajectories.get_publisher_count() > 0
 
-    def _rebuild(self, costmaps: Sequence[PlacedCostmap]) -> None:
-        self._memory.reset()
+    def _on_rebuilt(self) -> None:
         self._gate.reset()
-        for costmap in costmaps:
-            self._memory.fuse(costmap)
         self._publish_map(self._now_ns())
 
     def _place_waiting(self) -> None:
@@ -346,7 +359,7 @@ class MapMemoryNode(StageNode):
 
     def _fuse(self, arrival: _Arrival) -> None:
         costmap = self._with_hits(arrival)
-        if not self._memory.fuse(costmap):
+        if not self._rebuilding.change(lambda memory: memory.fuse(costmap)):
             return
         self._gate.fused(arrival.costmap, self._now_ns())
         if self._is_corrected:
@@ -450,6 +463,7 @@ class MapMemoryNode(StageNode):
 
     def load_map(self, cells: Cells, spec: GridSpec) -> None:
         """Replace the map by a loaded one; scans change it from now on."""
+        self._rebuilding.drop()
         self._memory.load(cells, spec)
         self._gate.reset()
         frame_id, now_ns = self.params.map_frame, self._now_ns()
@@ -470,14 +484,19 @@ class MapMemoryNode(StageNode):
         there would touch it.
         """
         newest = self._newest
-        if newest is None:
-            self._memory.clear(region)
-        else:
-            beside = self._memory.points_in_blind_spot(newest.costmap)
-            self._memory.clear(region)
-            if self._memory.fuse(self._with_hits(newest)):
-                self._gate.fused(newest.costmap, self._now_ns())
-            self._memory.restore(beside)
+
+        def clear(memory: MapMemory) -> bool:
+            if newest is None:
+                memory.clear(region)
+                return False
+            beside = memory.points_in_blind_spot(newest.costmap)
+            memory.clear(region)
+            is_fused = memory.fuse(self._with_hits(newest))
+            memory.restore(beside)
+            return is_fused
+
+        if self._rebuilding.change(clear) and newest is not None:
+            self._gate.fused(newest.costmap, self._now_ns())
         self._publish_map(self._now_ns())
 
     def _drop(self, reason: str, detail: str) -> None:

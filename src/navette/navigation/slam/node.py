@@ -7,6 +7,8 @@ the odometry continues the pose.
 """
 
 from collections import deque
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -14,7 +16,6 @@ import numpy as np
 
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3
-from navette.geometry.map_files import OccupancyMap
 from navette.geometry.messages import header, transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -37,6 +38,7 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.tf.exceptions import TransformException
+from navette.runtime.worker import Worker
 
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
 # Scans that wait for their odometry; more are older than any wait.
@@ -93,6 +95,7 @@ class SlamNode(StageNode):
         # Programs of Nav2 wait for the node that locates the robot.
         self._lifecycle = StageLifecycle(self, "amcl")
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
+        self.worker = Worker(self)
         self.restart()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
         self._services = SlamMapServices(self, session=self)
@@ -306,15 +309,20 @@ class SlamNode(StageNode):
     def _publish_map(self) -> None:
         """Publish the map if it has grown and a program subscribes to it."""
         keys = len(self._slam.graph)
-        if keys == self._map_keys or not self.has_listeners(topics.SLAM_MAP.name):
-            return
-        self._map_keys = keys
-        self.publish(topics.SLAM_MAP.name, self.map_message())
+        is_new = keys != self._map_keys and self.has_listeners(topics.SLAM_MAP.name)
+        if is_new and not self.worker.is_busy:
+            self._map_keys = keys
+            self.worker.run(
+                self.map_drawer(), partial(self.publish, topics.SLAM_MAP.name)
+            )
 
-    def render_map(self) -> OccupancyMap:
-        cells, spec = self._renderer.render(self._slam.placed_scans())
-        return OccupancyMap(cells, spec.resolution, spec.origin)
+    def map_drawer(self) -> Callable[[], OccupancyGrid]:
+        """Return what draws the present map, in the worker: 2 s with 2,000 scans."""
+        renderer, scans = self._renderer, self._slam.placed_scans()
+        frame_id, stamp_ns = self.params.map_frame, self._newest_ns
+        return lambda: grid_to_message(*renderer.render(scans), frame_id, stamp_ns)
 
-    def map_message(self) -> OccupancyGrid:
-        cells, spec = self._renderer.render(self._slam.placed_scans())
-        return grid_to_message(cells, spec, self.params.map_frame, self._newest_ns)
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        self.worker.close()
+        super().destroy_node()

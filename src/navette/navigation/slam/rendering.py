@@ -27,8 +27,8 @@ _OCCUPIED = 0.62
 _MARGIN_CELLS = 2
 # Room for a map to grow without being drawn again.
 _MARGIN_M = 5.0
-# Cells of the largest map; a larger one gets coarser cells.
-_MOST_CELLS = 16_000_000
+# Cells of the largest map, 400 m wide at 5 cm; a larger one gets coarser cells.
+_MOST_CELLS = 8_000**2
 
 
 class MapScan(NamedTuple):
@@ -69,7 +69,7 @@ class MapRenderer:
         if (
             self._spec is None
             or known > len(scans)
-            or not _holds(self._spec, _extent(scans[known:], self._params))
+            or not _holds(self._spec, _bounds(scans[known:], self._params))
             or _most_moved(self._drawn, scans) > 0.5 * self._params.resolution_m
         ):
             self._spec = _extent(scans, self._params, margin_m=_MARGIN_M)
@@ -81,18 +81,12 @@ class MapRenderer:
         return occupancy_of(self._field), self._spec
 
 
-def _holds(outer: GridSpec, inner: GridSpec) -> bool:
-    """Whether a grid lies within another one of the same frame and resolution."""
-    x, y = inner.origin.x, inner.origin.y
-    return (
-        outer.resolution == inner.resolution
-        and outer.contains(*outer.cell_of(x, y))
-        and outer.contains(
-            *outer.cell_of(
-                x + inner.width * inner.resolution, y + inner.height * inner.resolution
-            )
-        )
-    )
+def _holds(spec: GridSpec, bounds: NDArray[np.float64]) -> bool:
+    """Whether bounds (2, 2) in a grid's frame, m, lie within it; empty ones do."""
+    edge = spec.resolution
+    low = np.array([spec.origin.x, spec.origin.y])
+    high = low + np.array([spec.width * edge, spec.height * edge])
+    return bool((bounds[0] >= low).all() and (bounds[1] <= high).all())
 
 
 def _most_moved(drawn: Sequence[MapScan], scans: Sequence[MapScan]) -> float:
@@ -188,19 +182,21 @@ def _cells_around(
     return low, np.minimum(rows_columns.max(axis=0) + 1, spec.shape)
 
 
+def _bounds(scans: Sequence[MapScan], params: SlamParams) -> NDArray[np.float64]:
+    """Return the least and the largest x, y (2, 2) of all beams; ±∞ without scans."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for each in scans:
+        ends = _ends(each, *_readings(each.scan, params), params)
+        low = np.minimum(low, ends.min(axis=0))
+        high = np.maximum(high, ends.max(axis=0))
+    return np.array([low, high])
+
+
 def _extent(
     scans: Sequence[MapScan], params: SlamParams, *, margin_m: float = 0.0
 ) -> GridSpec:
     """Return the grid that holds all beams, in whole cells of the map's frame."""
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for each in scans:
-        ends = _ends(each, *_readings(each.scan, params), params)
-        low, high = (
-            np.minimum(low, ends.min(axis=0)),
-            np.maximum(high, ends.max(axis=0)),
-        )
-    if not scans:
-        low, high = np.zeros(2), np.zeros(2)
+    low, high = _bounds(scans, params) if scans else np.zeros((2, 2))
     low, high = low - margin_m, high + margin_m
     resolution = params.resolution_m
     while np.prod((high - low) / resolution + 2 * _MARGIN_CELLS + 2) > _MOST_CELLS:

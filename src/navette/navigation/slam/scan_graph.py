@@ -1,6 +1,7 @@
 """Key scans, the measurements between them and their poses."""
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -64,6 +65,13 @@ class ScanGraph:
 
     def __len__(self) -> int:
         return len(self.keys)
+
+    def copy(self) -> "ScanGraph":
+        """Return a graph with the same key scans, to which none are added."""
+        other = copy(self)
+        other.keys, other.edges = self.keys.copy(), self.edges.copy()
+        other.sessions = self.sessions.copy()
+        return other
 
     @property
     def poses(self) -> Matrix:

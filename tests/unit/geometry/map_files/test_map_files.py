@@ -54,6 +54,26 @@ def test_modes_thresholds_and_negation(tmp_path: Path) -> None:
     assert cells(mode="raw") == [0, 64, -1, -1, -1]
 
 
+def test_a_map_of_200_m_is_read_as_it_was_written(tmp_path: Path) -> None:
+    cells = np.zeros((4040, 4100), np.int8)
+    cells[0], cells[:, 0] = 100, 100
+    write_occupancy_map(tmp_path / "hall", OccupancyMap(cells, 0.05, ORIGIN))
+    found = read_occupancy_map(tmp_path / "hall.yaml")
+    np.testing.assert_array_equal(found.cells, cells)
+
+
+@pytest.mark.parametrize(("height", "is_read"), [(9_999, True), (10_001, False)])
+def test_the_number_of_pixels_is_bounded(
+    height: int, is_read: bool, tmp_path: Path
+) -> None:
+    """The header alone is given, so that no memory is required."""
+    path = described(tmp_path, np.zeros((1, 1)), image="large.pgm")
+    (tmp_path / "large.pgm").write_bytes(b"P5 10000 %d 255\n" % height)
+    expected = "truncated" if is_read else "at most 100000000"
+    with pytest.raises(FileFormatError, match=expected):
+        read_occupancy_map(path)
+
+
 def test_transparent_pixels_are_unknown(tmp_path: Path) -> None:
     pixels = np.array([[[0, 255], [0, 0], [255, 255]]])
     path = described(tmp_path, pixels)

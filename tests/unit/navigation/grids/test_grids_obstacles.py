@@ -237,6 +237,45 @@ class Driving:
         return self.first
 
 
+def test_only_the_cells_near_the_robot_are_kept_of_a_map_that_lost_some() -> None:
+    """After a loop closure each map loses cells: a copy of all would take 10 ms."""
+    spec = GridSpec(0.1, 60, 40, Pose2(1.0, 2.0, 0.3))
+    rng = np.random.default_rng(1)
+    values = np.array([UNKNOWN, FREE, LETHAL], np.int8)
+    before, now = rng.choice(values, (2, *spec.shape))
+    window = CellWindow(5, 25, 10, 50)
+    seen = _seen_also(Layer(now, spec), Layer(before, spec), window)
+    known = ((now != UNKNOWN) | (before != UNKNOWN))[window.slices]
+    np.testing.assert_array_equal(seen.cells != UNKNOWN, known)
+    later = _seen_also(Layer(now, spec), seen, CellWindow(0, 20, 20, 60))
+    again = ((now != UNKNOWN) | (before != UNKNOWN))[5:20, 20:50]
+    np.testing.assert_array_equal(later.cells[5:, :30] != UNKNOWN, again)
+    only_now = now[:20, 20:60] != UNKNOWN
+    np.testing.assert_array_equal(later.cells[:, 30:] != UNKNOWN, only_now[:, 30:])
+
+
+def test_a_robot_that_leaves_what_is_kept_sees_the_newest_map() -> None:
+    poses = Driving()
+    outline = Footprint.from_flat((0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2))
+    tracker = ObstacleTracker(poses, outline, hand_m=0.0)
+    spec = GridSpec(0.1, 600, 100, Pose2(-5.0, -5.0, 0.0))
+    cells = np.zeros(spec.shape, np.int8)
+    tracker.remember(ReceivedMap(cells, spec), None, 0, 0)
+    cells = cells.copy()
+    cells[50:60, 60:70] = UNKNOWN  # near the robot
+    cells[50:60, 400:410] = UNKNOWN  # 35 m ahead
+    tracker.remember(ReceivedMap(cells, spec), None, 1, 0)
+    unseen = []
+    for x in (0.0, 1.0, 36.0):
+        poses.pose = Pose2(x, 0.0, 0.0)
+        grid = np.full((3, 3), UNKNOWN, np.int8)
+        tracker.receive(grid_to_message(grid, GridSpec(0.1, 3, 3), "map", 1), 0)
+        placed = tracker.place(0, LETHAL, reach_m=3.0, unseen_reach_m=3.0)
+        assert placed is not None
+        unseen.append(len(placed.unseen))
+    assert unseen == [0, 0, 100]
+
+
 @settings(max_examples=40, deadline=None)
 @given(seed=SEEDS)
 def test_parts_of_a_map_give_the_same_obstacles_as_whole_maps(seed: int) -> None:

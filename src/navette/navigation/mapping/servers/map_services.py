@@ -22,6 +22,7 @@ from navette.runtime.callback_groups import ReentrantCallbackGroup
 from navette.runtime.exceptions import InvalidTopicNameException
 from navette.runtime.node import Node
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
+from navette.runtime.worker import Worker
 
 _SAVE_TIMEOUT_S = 6.0  # for the message of another topic; slam publishes every 5 s
 _FREE_THRESHOLD, _OCCUPIED_THRESHOLD = 0.25, 0.65  # of map_saver
@@ -38,6 +39,10 @@ class MapStore(Protocol):
 
     def load_map(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map and publish it."""
+
+    @property
+    def worker(self) -> Worker:
+        """Where files are written."""
 
     @property
     def is_probability_map(self) -> bool:
@@ -95,12 +100,14 @@ class MapServices:
             self._error(f"map of {request.map_topic or 'map'!r} not saved: {missing}")
             return response
         mode = request.map_mode or "trinary"
-        try:
+        has_costs = own and not self._store.is_probability_map
+
+        def write() -> Path:
             cells, spec = grid_from_message(grid)
-            if own and mode == "trinary" and not self._store.is_probability_map:
+            if has_costs and mode == "trinary":
                 # Costs below that of an obstacle are of free cells.
                 cells = np.where((cells > FREE) & (cells < LETHAL), FREE, cells)
-            written = write_occupancy_map(
+            return write_occupancy_map(
                 path,
                 OccupancyMap(cells, spec.resolution, spec.origin),
                 mode=mode,
@@ -108,6 +115,9 @@ class MapServices:
                 free_threshold=request.free_thresh or _FREE_THRESHOLD,
                 occupied_threshold=request.occupied_thresh or _OCCUPIED_THRESHOLD,
             )
+
+        try:
+            written = await self._store.worker.submit(write)
         except (OSError, ValueError) as error:
             self._error(f"map not saved: {error}")
             return response

@@ -12,10 +12,12 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.nav_msgs.srv import GetMap
 from navette.msgs.slam_toolbox import srv as toolbox
 from navette.msgs.std_srvs.srv import Empty
+from navette.navigation.grids import grid_from_message
 from navette.navigation.slam.graph_file import SUFFIX, read_graph, write_graph
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.scan_graph import ScanGraph
 from navette.runtime.node import Node
+from navette.runtime.worker import Worker
 
 # Name of a map without one, as of map_saver in the current folder.
 _UNNAMED = "map"
@@ -37,11 +39,12 @@ class MapSession(Protocol):
     def is_paused(self) -> bool:
         """Whether scans are left out."""
 
-    def render_map(self) -> OccupancyMap:
-        """Return the present map."""
+    @property
+    def worker(self) -> Worker:
+        """Where maps are drawn, and files written and read."""
 
-    def map_message(self) -> OccupancyGrid:
-        """Return the present map as a message."""
+    def map_drawer(self) -> Callable[[], OccupancyGrid]:
+        """Return what draws the present map, in the worker."""
 
     def continue_map(self, graph: ScanGraph, start: Pose2, *, is_mapping: bool) -> None:
         """Continue a map at a rough pose of the robot, or localize in it."""
@@ -73,65 +76,69 @@ class SlamMapServices:
         ):
             node.create_service(kind, f"slam_toolbox/{name}", callback)
 
-    def _save(self, request: Any, response: Any) -> Any:
+    async def _save(self, request: Any, response: Any) -> Any:
         """Write MAP.yaml and its image, and MAP.slam to continue the map."""
+        draw, graph = self._session.map_drawer(), self._session.scan_graph.copy()
 
         def write() -> str:
             stem = _stem(request.map_url, "map_url")
-            written = self._write_image(
+            written = _write_image(
                 stem,
+                draw(),
                 mode=request.map_mode or "trinary",
                 image_format=request.image_format.lower(),
             )
-            write_graph(_with_suffix(stem), self._session.scan_graph)
+            write_graph(_with_suffix(stem), graph)
             return f"{written}, and {stem.name}{SUFFIX}"
 
-        response.result = self._saved("map", write)
+        response.result = await self._saved("map", write)
         return response
 
-    def _save_image(self, request: Any, response: Any) -> Any:
+    async def _save_image(self, request: Any, response: Any) -> Any:
         """Write NAME.yaml and its image."""
         if not len(self._session.scan_graph):
             self._error("map not saved: no scan has arrived")
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
-        is_saved = self._saved(
-            "map",
-            lambda: self._write_image(_stem(request.name.data or _UNNAMED, "name")),
+        draw = self._session.map_drawer()
+        name = request.name.data or _UNNAMED
+        is_saved = await self._saved(
+            "map", lambda: _write_image(_stem(name, "name"), draw())
         )
         response.result = (
             response.RESULT_SUCCESS if is_saved else response.RESULT_UNDEFINED_FAILURE
         )
         return response
 
-    def _serialize(self, request: Any, response: Any) -> Any:
+    async def _serialize(self, request: Any, response: Any) -> Any:
         """Write FILENAME.slam: scans and pose graph."""
+        graph = self._session.scan_graph.copy()
 
         def write() -> Path:
             path = _with_suffix(_stem(request.filename, "filename"))
-            if not len(self._session.scan_graph):
+            if not len(graph):
                 raise InvalidValueError("no scan has arrived")
-            write_graph(path, self._session.scan_graph)
+            write_graph(path, graph)
             return path
 
         response.result = (
             response.RESULT_SUCCESS
-            if self._saved("scans", write)
+            if await self._saved("scans", write)
             else response.RESULT_FAILED_TO_WRITE_FILE
         )
         return response
 
-    def _saved(self, what: str, write: Callable[[], Path | str]) -> bool:
+    async def _saved(self, what: str, write: Callable[[], Path | str]) -> bool:
         """Write files; log their names, or the failure; return whether it worked."""
         try:
-            written = write()
+            written = await self._session.worker.submit(write)
         except _FAILED as error:
             self._error(f"{what} not saved: {error}")
             return False
         self._info(f"{what} saved: {written}")
         return True
 
-    def _deserialize(self, request: Any, response: Any) -> Any:
+    async def _deserialize(self, request: Any, response: Any) -> Any:
         """Continue the map FILENAME.slam, or localize in it.
 
         The log and the status have the outcome: the response has no field in ROS 2
@@ -149,7 +156,10 @@ class SlamMapServices:
                     "2 (at initial_pose) or 3 (at initial_pose, the map stays as it is)"
                 )
             path = _with_suffix(_stem(request.filename, "filename"))
-            graph = read_graph(path, self._session.params)
+            params = self._session.params
+            graph: Any = await self._session.worker.submit(
+                lambda: read_graph(path, params)
+            )
             start = graph.pose(0)
             if request.match_type != request.START_AT_FIRST_NODE:
                 given = request.initial_pose
@@ -181,19 +191,23 @@ class SlamMapServices:
         self._session.restart()
         return response
 
-    def _get(self, _: Any, response: Any) -> Any:
+    async def _get(self, _: Any, response: Any) -> Any:
         if len(self._session.scan_graph):
-            response.map = self._session.map_message()
+            draw = self._session.map_drawer()
+            response.map = await self._session.worker.submit(draw)
         return response
-
-    def _write_image(self, stem: Path, **options: Any) -> Path:
-        return write_occupancy_map(stem, self._session.render_map(), **options)
 
     def _error(self, text: str) -> None:
         self._node.get_logger().error(text)
 
     def _info(self, text: str) -> None:
         self._node.get_logger().info(text)
+
+
+def _write_image(stem: Path, grid: OccupancyGrid, **options: Any) -> Path:
+    cells, spec = grid_from_message(grid)
+    drawn = OccupancyMap(cells, spec.resolution, spec.origin)
+    return write_occupancy_map(stem, drawn, **options)
 
 
 def _stem(url: str, field: str) -> Path:
