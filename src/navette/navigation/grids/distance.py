@@ -52,6 +52,31 @@ def distance_field(
     return field
 
 
+def square_field(occupied: Occupied, radius_cells: int) -> NDArray[np.integer[Any]]:
+    """Squared distance to the nearest obstacle in cells², between cell centres.
+
+    Args:
+        occupied: (H, W), non-zero = obstacle.
+        radius_cells: search radius.
+
+    Returns:
+        (H, W) uint16 or int32, exact up to ``radius_cells``² and beyond that
+        (``radius_cells`` + 1)².
+
+    Raises:
+        InvalidValueError: a radius out of range, or a wrong array.
+    """
+    occupied = kernel_array("occupied", occupied, np.uint8)
+    scratch = make_scratch(occupied.shape, radius_cells)
+    most = (radius_cells + 1) ** 2
+    kind = np.uint16 if most <= np.iinfo(np.uint16).max else np.int32
+    table = np.minimum(np.arange((scratch.radius + 1) ** 2 + 1), most).astype(kind)
+    table[-1] = most
+    field = np.empty(occupied.shape, kind)
+    field_kernel(occupied, scratch, table, field)
+    return field
+
+
 def metres_by_square(
     resolution: float, radius: int, max_distance_m: float
 ) -> NDArray[np.float32]:

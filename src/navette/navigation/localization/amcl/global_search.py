@@ -46,7 +46,7 @@ class Candidates(NamedTuple):
 
 def search_map(field: LikelihoodField, points: Points) -> Candidates:
     """Return the poses of the base from which the points (M, 2), base, fit the map."""
-    if not len(points) or not len(field.free):
+    if not len(points) or not field.is_free.any():
         return Candidates(np.empty((0, 3)), np.empty(0))
     few = _spread(points, _BEAMS)
     blurred = field.blurred(_BLUR_M, _RANDOM)
@@ -90,11 +90,10 @@ def _coarse_poses(field: LikelihoodField, points: Points) -> Poses:
     """Return poses (N, 3) at free cells, the most promising ones of a large map."""
     step = max(1, round(_SPACING_M / field.spec.resolution))
     offset = step // 2
-    is_free = np.zeros(field.spec.shape, np.bool_)
-    is_free[field.free[:, 0], field.free[:, 1]] = True
-    on_grid = is_free[offset::step, offset::step]
+    on_grid = field.is_free[offset::step, offset::step]
     if not on_grid.any():  # narrow places between the grid's lines
-        return _with_headings(field, field.free[:: -(-len(field.free) // _MOST_CELLS)])
+        free = np.argwhere(field.is_free)
+        return _with_headings(field, free[:: -(-len(free) // _MOST_CELLS)])
     if on_grid.sum() <= _MOST_CELLS:
         return _with_headings(field, offset + step * np.argwhere(on_grid))
     edge = _BLOCK

@@ -21,7 +21,10 @@ from navette.navigation.localization.amcl.likelihood_field import (
 from navette.navigation.localization.amcl.messages import thinned
 from navette.navigation.localization.amcl.odometry_jumps import OdometryJumps
 from navette.navigation.localization.amcl.params import AmclParams
-from navette.navigation.localization.amcl.particle_filter import ParticleFilter
+from navette.navigation.localization.amcl.particle_filter import (
+    GOOD_FIT,
+    ParticleFilter,
+)
 
 # Period of an update of a robot at rest: it may have been carried.
 _REST_UPDATE_NS = 1_000_000_000
@@ -29,11 +32,10 @@ _REST_UPDATE_NS = 1_000_000_000
 _SEARCH_NS = 1_000_000_000
 # Period of comparisons with all places of the map before it counts as localized.
 _COMPARE_NS = 500_000_000
-# Period of checks of a robot that is localized; the mean log likelihood of a beam from
-# which its pose needs no comparison, and by which another place is clearly better. That
-# of a right pose is about -0.03, with a third of the beams at unknown things -0.7.
+# Period of checks of a robot that is localized, unless its pose fits well; and by which
+# mean log likelihood of a beam another place is clearly better.
 _VERIFY_NS = 2_000_000_000
-_GOOD_FIT, _BETTER_FIT = -0.1, 0.1
+_BETTER_FIT = 0.1
 _SAME_M = 0.5  # distance below which two estimates are of one place
 _FARTHEST_M = 1e6  # of a standard deviation
 _LOST_SHARE = 0.5  # of the particles that such a search replaces
@@ -107,6 +109,14 @@ class MapLocalizer:
         self._recent = RecentScans()
         self._hypotheses = 1
         self._compared_ns = -_COMPARE_NS
+
+    @property
+    def present_pose(self) -> tuple[Pose2, NDArray[np.float64]] | None:
+        """The estimated pose and its covariance (3, 3), to continue on another map."""
+        if self.filter.is_empty:
+            return None
+        estimate = self.filter.estimate()
+        return estimate.pose, estimate.covariance + np.eye(3) * 1e-4
 
     def set_pose(self, pose: Pose2, covariance: NDArray[np.float64]) -> None:
         """Continue from a pose; covariance (3, 3) of x, y, yaw."""
@@ -238,7 +248,7 @@ class MapLocalizer:
         used = thinned(scan.points, self.params.max_beams)
         points = self._recent.seen_from(used, scan.odom_T_base)
         fit = self.filter.fit(pose, points)
-        if fit > _GOOD_FIT:
+        if fit > GOOD_FIT:
             return self.confidence.state
         found = self.filter.hypotheses(pose, points)
         best = Pose2(*found.poses[0].tolist())

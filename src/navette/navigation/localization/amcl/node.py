@@ -6,8 +6,10 @@ to move in places that look alike. A robot whose scans stop matching the map is
 ``lost``: the last correction stays, navigation stops, and the whole map is searched.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, ClassVar
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +50,9 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
+from navette.runtime.worker import Worker
+
+T = TypeVar("T")
 
 _START = ("x", "y", "z", "yaw")
 _MAP_TIMEOUT_NS = 2_000_000_000
@@ -60,6 +65,19 @@ _LEVELS = {
     LocalizationState.LOCALIZED: StatusReporter.OK,
     LocalizationState.LOCALIZING: StatusReporter.WARN,
 }
+
+
+class _Found(NamedTuple):
+    """Where a scan places the robot, and the particles (N, 3) and their weights."""
+
+    located: Located
+    particles: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+
+def _located(localizer: MapLocalizer, view: ScanView) -> _Found:
+    located, particles = localizer.step(view), localizer.filter
+    return _Found(located, particles.particles.copy(), particles.weights.copy())
 
 
 class AmclNode(StageNode):
@@ -89,7 +107,11 @@ class AmclNode(StageNode):
     def __init__(self, node_name: str = "amcl", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._lifecycle = StageLifecycle(self, "amcl")
+        # A search of a large map takes longer than the robot may be without commands.
+        self._worker = Worker(self)
+        # Of the worker: all that uses it is computed there, in order.
         self._localizer: MapLocalizer | None = None
+        self._has_map = False
         self._given: tuple[Pose2, NDArray[np.float64]] | None = None
         self._map: OccupancyGrid | None = None
         self._waits_since_ns: int | None = None
@@ -129,17 +151,17 @@ class AmclNode(StageNode):
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Localize on a map; another one keeps the pose."""
-        if self._localizer is not None and self.params.first_map_only:
+        if self._has_map and self.params.first_map_only:
             return
         self._map = msg
         self._begin(msg)
 
     def on_scan(self, msg: LaserScan) -> None:
-        """Locate the robot at the stamp of the scan."""
-        if self._localizer is None:
+        """Locate the robot at the stamp of the scan, unless one before is in use."""
+        if not self._has_map:
             self._report_missing_map()
             return
-        if not self._lifecycle.is_active:
+        if not self._lifecycle.is_active or self._worker.is_busy:
             return
         stamp_ns = stamp_to_ns(msg.header.stamp)
         odom_T_base = self._tracker.predicted_at(stamp_ns)
@@ -150,8 +172,8 @@ class AmclNode(StageNode):
         upward = upward_of(self._attitude.at(stamp_ns))
         if upward != LEVEL:
             points = points[~is_floor(points, self._height_of(msg), upward)]
-        located = self._localizer.step(ScanView(points, odom_T_base, stamp_ns))
-        self._publish(located, odom_T_base, stamp_ns)
+        view = ScanView(points, odom_T_base, stamp_ns)
+        self._use(partial(_located, view=view), partial(self._publish, view=view))
 
     def _height_of(self, msg: LaserScan) -> float:
         """Return the height of the scanner above the base, m."""
@@ -186,15 +208,13 @@ class AmclNode(StageNode):
     def on_reinitialize(self, request: Any, response: Any) -> Any:
         """Forget the pose and search the whole map."""
         self._given = None
-        if self._localizer is not None:
-            self._localizer.locate_globally()
+        self._use(MapLocalizer.locate_globally)
         self.get_logger().info("global localization: the whole map is searched")
         return response
 
     def on_request_update(self, request: Any, response: Any) -> Any:
         """Update the filter at the next scan, also without motion."""
-        if self._localizer is not None:
-            self._localizer.request_update()
+        self._use(MapLocalizer.request_update)
         return response
 
     def on_params_changed(self, old: AmclParams) -> None:
@@ -212,31 +232,55 @@ class AmclNode(StageNode):
         """Drop the pose."""
         self._tracker.reset()
         if self._map is not None:
-            self._localizer = None
-            self._begin(self._map)
+            self._begin(self._map, keeps_pose=False)
+
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        self._worker.close()
+        super().destroy_node()
 
     def _new_tracker(self) -> PoseTracker:
         params = self.params
         return PoseTracker(self, params.base_frame_id, params.odom_frame_id)
 
-    def _begin(self, msg: OccupancyGrid) -> None:
+    def _begin(self, msg: OccupancyGrid, *, keeps_pose: bool = True) -> None:
+        """Localize on a map, from the present pose on."""
         try:
             cells, spec = grid_from_message(msg)
         except InvalidValueError as error:
             raise InvalidInputError("out_of_range", str(error)) from None
-        former = self._localizer
-        self._localizer = MapLocalizer(self.params, cells, spec)
-        given = self._given
-        if former is not None and not self.params.always_reset_initial_pose:
-            if not former.filter.is_empty:
-                estimate = former.filter.estimate()
-                given = estimate.pose, estimate.covariance + np.eye(3) * 1e-4
-        elif given is None and self.params.set_initial_pose:
+        params, given = self.params, self._given
+        keeps_pose &= not params.always_reset_initial_pose
+        first = given
+        if given is None and params.set_initial_pose:
             x, y, _, yaw = self._start
-            given = Pose2(x, y, yaw), default_covariance(self.params)
-        if given is not None:
-            self._localizer.set_pose(*given)
-        self._report(self._localizer.confidence.state)
+            first = Pose2(x, y, yaw), default_covariance(params)
+
+        def begin() -> LocalizationState:
+            former, start = self._localizer, first
+            self._localizer = MapLocalizer(params, cells, spec)
+            if former is not None and keeps_pose:
+                start = former.present_pose or given
+            if start is not None:
+                self._localizer.set_pose(*start)
+            return self._localizer.confidence.state
+
+        self._has_map = True
+        self._worker.run(begin, self._report)
+
+    def _use(
+        self,
+        change: Callable[[MapLocalizer], T],
+        finish: Callable[[T], None] = lambda _: None,
+    ) -> None:
+        """Use the localizer in the worker, if there is a map."""
+
+        def use() -> T:
+            assert self._localizer is not None, "the map came first"
+            return change(self._localizer)
+
+        if self._has_map:
+            self._worker.run(use, finish)
 
     def _report_missing_map(self) -> None:
         """Report once that scans arrive and no map does."""
@@ -257,13 +301,13 @@ class AmclNode(StageNode):
         self.get_logger().info(
             f"initial pose: ({pose.x:.2f}, {pose.y:.2f}), heading {pose.yaw:.2f} rad"
         )
-        if self._localizer is None:
+        if not self._has_map:
             self.get_logger().warning("no map has arrived yet; the pose is kept for it")
-            return
-        self._localizer.set_pose(pose, covariance)
+        self._use(lambda localizer: localizer.set_pose(pose, covariance))
 
-    def _publish(self, located: Located, odom_T_base: Pose2, stamp_ns: int) -> None:
-        params = self.params
+    def _publish(self, found: _Found, view: ScanView) -> None:
+        params, located = self.params, found.located
+        odom_T_base, stamp_ns = view.odom_T_base, view.stamp_ns
         if located.map_T_odom is not None and params.tf_broadcast:
             ahead_ns = round(params.transform_tolerance * 1e9)
             transform = transform_message(
@@ -282,7 +326,7 @@ class AmclNode(StageNode):
             match=located.match,
             stddev_m=estimate.stddev_m,
             share=estimate.share,
-            particles=len(self._particles),
+            particles=len(found.particles),
             hypotheses=located.hypotheses,
         )
         if not located.is_updated:
@@ -294,15 +338,8 @@ class AmclNode(StageNode):
             message.pose.covariance = spatial_covariance(estimate.covariance)
             self.publish(topics.AMCL_POSE.name, message)
         if self.has_listeners(topics.PARTICLES.name):
-            assert self._localizer is not None, "it made the estimate"
-            weights = self._localizer.filter.weights
-            cloud = cloud_message(self._particles, weights, header)
+            cloud = cloud_message(found.particles, found.weights, header)
             self.publish(topics.PARTICLES.name, cloud)
-
-    @property
-    def _particles(self) -> NDArray[np.float64]:
-        assert self._localizer is not None, "called with a map"
-        return self._localizer.filter.particles
 
     def _report(self, state: LocalizationState, **details: Any) -> None:
         if state is not self._state:

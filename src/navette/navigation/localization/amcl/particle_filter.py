@@ -44,8 +44,12 @@ _SEED_BEAMS = 6.0
 _SEARCH_EVERY = 5
 # Largest share of particles that recovery replaces in an update.
 _MOST_REPLACED = 0.5
-# Below this ratio of the short-term to the long-term mean recovery begins.
+# Below this ratio of the short-term to the long-term mean recovery begins …
 _RECOVERY_RATIO = 0.8
+# … unless a particle fits at least so well: the mean also falls where walls are far,
+# and no search finds a better pose. Mean log likelihood of a beam: that of a right pose
+# is about -0.03, with a third of the beams at unknown things -0.7.
+GOOD_FIT = -0.1
 
 
 class ParticleFilter:
@@ -111,6 +115,7 @@ class ParticleFilter:
         if not len(points):
             return
         scores = self._field.scores(self.particles, points)
+        self._best = float(scores.max())
         likelihood = np.exp(scores)  # geometric mean of the beams
         self._note_quality(float(self.weights @ likelihood))
         beams = min(self.params.independent_beams, float(len(points)))
@@ -167,6 +172,7 @@ class ParticleFilter:
 
     def _forget_means(self) -> None:
         self._slow = self._fast = 0.0
+        self._best = -math.inf
         self._updates = self._searched = 0
 
     def _note_quality(self, mean: float) -> None:
@@ -191,7 +197,8 @@ class ParticleFilter:
         self.weights = np.full(len(drawn), 1.0 / len(drawn))
         ratio = self._fast / self._slow if self._slow else 1.0
         due = self._updates - self._searched >= _SEARCH_EVERY
-        if params.recovery_alpha_slow and ratio < _RECOVERY_RATIO and due:
+        is_worse = ratio < _RECOVERY_RATIO and self._best < GOOD_FIT
+        if params.recovery_alpha_slow and is_worse and due:
             self._searched = self._updates
             self.recover(points, min(_MOST_REPLACED, 1.0 - ratio))
 
