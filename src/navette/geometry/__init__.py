@@ -1,5 +1,6 @@
 """Angles, poses, transforms and footprints."""
 
+from navette.geometry.covariance import largest_stddev
 from navette.geometry.drives import ACKERMANN, DIFFERENTIAL, DRIVES, OMNI
 from navette.geometry.footprint import Footprint
 from navette.geometry.se2 import Pose2, advanced, angle_difference, wrap_angle
@@ -23,6 +24,7 @@ __all__ = [
     "advanced",
     "angle_difference",
     "wrap_angle",
+    "largest_stddev",
     "Footprint",
     "DRIVES",
     "DIFFERENTIAL",

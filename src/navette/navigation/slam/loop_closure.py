@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Pose2, angle_difference, largest_stddev
 from navette.navigation.slam.correlative import SearchWindow, search
 from navette.navigation.slam.motion import inverted
 from navette.navigation.slam.params import SlamParams
@@ -213,4 +213,4 @@ def _agree(one: GraphEdge, other: GraphEdge, graph: ScanGraph) -> bool:
 
 def _spread(covariance: Matrix) -> float:
     """Return three standard deviations of the position, m."""
-    return SIGMAS * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
+    return SIGMAS * largest_stddev(covariance)

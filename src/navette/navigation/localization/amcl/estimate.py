@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, largest_stddev
+from navette.navigation.localization.amcl.bins import bin_keys
 
 _BIN_M, _BIN_RAD = 0.5, math.radians(20.0)
 _RADIUS_M, _RADIUS_RAD = 0.75, 0.5
@@ -30,9 +32,33 @@ class ParticleEstimate:
     @property
     def stddev_m(self) -> float:
         """Standard deviation of the position along the worst axis, m."""
-        return float(
-            math.sqrt(max(0.0, np.linalg.eigvalsh(self.covariance[:2, :2])[1]))
-        )
+        return largest_stddev(self.covariance)
+
+
+@dataclass(frozen=True, eq=False)
+class Particles:
+    """Weighted poses; the arrays are never modified.
+
+    Attributes:
+        poses: (N, 3) x, y, yaw.
+        weights: (N,) with sum 1.
+    """
+
+    poses: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, poses: NDArray[np.float64]) -> "Particles":
+        """Return poses (N, 3) with equal weights."""
+        return cls(poses, np.full(len(poses), 1.0 / max(1, len(poses))))
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    @cached_property
+    def estimate(self) -> ParticleEstimate:
+        """The heaviest cluster."""
+        return heaviest_cluster(self.poses, self.weights)
 
 
 def heaviest_cluster(
@@ -44,10 +70,9 @@ def heaviest_cluster(
         particles: (N, 3) x, y, yaw.
         weights: (N,) with sum 1.
     """
-    bins = np.floor(particles / (_BIN_M, _BIN_M, _BIN_RAD)).astype(np.int64)
-    _, of_bin = np.unique(bins, axis=0, return_inverse=True)
-    mass = np.bincount(of_bin.ravel(), weights)
-    inside = of_bin.ravel() == int(mass.argmax())
+    keys = bin_keys(particles, _BIN_M, _BIN_RAD)
+    _, of_bin = np.unique(keys, return_inverse=True)
+    inside = of_bin == int(np.bincount(of_bin, weights).argmax())
     mean = _mean(particles[inside], weights[inside])
     for _ in range(_ROUNDS):
         away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])

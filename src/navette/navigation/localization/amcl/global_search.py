@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.localization.amcl.bins import bin_keys
 from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
     Points,
@@ -56,8 +57,8 @@ def search_map(field: LikelihoodField, points: Points) -> Candidates:
     best = np.argpartition(-coarse, count - 1)[:count]
     best = best[np.argsort(-coarse[best], kind="stable")]
     # Neighbours of a place that fits well must not displace the other places.
-    bins = np.floor(poses[best] / (_APART_M, _APART_M, _APART_RAD))
-    first_of_place = np.sort(np.unique(bins, axis=0, return_index=True)[1])[:_PLACES]
+    keys = bin_keys(poses[best], _APART_M, _APART_RAD)
+    first_of_place = np.sort(np.unique(keys, return_index=True)[1])[:_PLACES]
     best = best[np.union1d(np.arange(min(_REFINED, count)), first_of_place)]
     refined, scores = field.refined(poses[best], points, 0.1, math.radians(3.0))
     order = np.argsort(-scores, kind="stable")

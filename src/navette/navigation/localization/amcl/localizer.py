@@ -128,8 +128,7 @@ class MapLocalizer:
 
     def locate_globally(self) -> None:
         """Forget the pose; the next scan begins a search of the whole map."""
-        self.filter.particles = np.empty((0, 3))
-        self.filter.weights = np.empty(0)
+        self.filter.forget()
         self.confidence.restart(is_given=False)
         self._is_given = False
         self._recent.clear()

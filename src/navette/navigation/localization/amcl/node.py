@@ -28,6 +28,7 @@ from navette.msgs.std_srvs.srv import Empty
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import LEVEL, grid_from_message, is_floor, upward_of
 from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.estimate import Particles
 from navette.navigation.localization.amcl.localizer import (
     Located,
     MapLocalizer,
@@ -68,16 +69,15 @@ _LEVELS = {
 
 
 class _Found(NamedTuple):
-    """Where a scan places the robot, and the particles (N, 3) and their weights."""
+    """Where a scan places the robot, and the particles."""
 
     located: Located
-    particles: NDArray[np.float64]
-    weights: NDArray[np.float64]
+    particles: Particles
 
 
 def _located(localizer: MapLocalizer, view: ScanView) -> _Found:
-    located, particles = localizer.step(view), localizer.filter
-    return _Found(located, particles.particles.copy(), particles.weights.copy())
+    located = localizer.step(view)
+    return _Found(located, localizer.filter.particles)
 
 
 class AmclNode(StageNode):
@@ -338,7 +338,8 @@ class AmclNode(StageNode):
             message.pose.covariance = spatial_covariance(estimate.covariance)
             self.publish(topics.AMCL_POSE.name, message)
         if self.has_listeners(topics.PARTICLES.name):
-            cloud = cloud_message(found.particles, found.weights, header)
+            particles = found.particles
+            cloud = cloud_message(particles.poses, particles.weights, header)
             self.publish(topics.PARTICLES.name, cloud)
 
     def _report(self, state: LocalizationState, **details: Any) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2
 from navette.navigation.localization.amcl.estimate import (
     ParticleEstimate,
-    heaviest_cluster,
+    Particles,
 )
 from navette.navigation.localization.amcl.global_search import (
     Candidates,
@@ -70,8 +70,11 @@ class ParticleFilter:
         self._alphas = tuple(getattr(params, f"alpha{i}") for i in range(1, 6))
         omni = params.robot_model_type == "nav2_amcl::OmniMotionModel"
         self._move = move_omni if omni else move_differential
-        self.particles = np.empty((0, 3))
-        self.weights = np.empty(0)
+        self.forget()
+
+    def forget(self) -> None:
+        """Drop all particles."""
+        self.particles = Particles.of(np.empty((0, 3)))
         self._forget_means()
 
     @property
@@ -87,7 +90,7 @@ class ParticleFilter:
             mean, covariance, count, check_valid="ignore"
         )
         drawn[:, 2] = (drawn[:, 2] + math.pi) % (2 * math.pi) - math.pi
-        self.particles, self.weights = drawn, np.full(count, 1.0 / count)
+        self.particles = Particles.of(drawn)
         self._forget_means()
 
     def locate_globally(self, points: Points) -> bool:
@@ -95,15 +98,15 @@ class ParticleFilter:
         found = search_map(self._field, points)
         if not len(found.poses):
             return False
-        count = self.params.max_particles
-        self.particles = self._around(found, count)
-        self.weights = np.full(count, 1.0 / count)
+        self.particles = Particles.of(self._around(found, self.params.max_particles))
         self._forget_means()
         return True
 
     def predict(self, motion: Pose2) -> None:
         """Move the particles by the odometry's motion, base before to base after."""
-        self._move(self.particles, motion, self._alphas, self._rng)
+        poses = self.particles.poses.copy()
+        self._move(poses, motion, self._alphas, self._rng)
+        self.particles = Particles(poses, self.particles.weights)
 
     def update(self, points: Points, *, may_skip: bool = False) -> None:
         """Weight by a scan's points (M, 2), base frame; resample when due.
@@ -114,21 +117,22 @@ class ParticleFilter:
             points = self._agreed(points)
         if not len(points):
             return
-        scores = self._field.scores(self.particles, points)
+        poses, before = self.particles.poses, self.particles.weights
+        scores = self._field.scores(poses, points)
         self._best = float(scores.max())
         likelihood = np.exp(scores)  # geometric mean of the beams
-        self._note_quality(float(self.weights @ likelihood))
+        self._note_quality(float(before @ likelihood))
         beams = min(self.params.independent_beams, float(len(points)))
-        log_weights = np.log(self.weights + 1e-300) + beams * (scores - scores.max())
+        log_weights = np.log(before + 1e-300) + beams * (scores - scores.max())
         weights = np.exp(log_weights - log_weights.max())
-        self.weights = weights / weights.sum()
+        self.particles = Particles(poses, weights / weights.sum())
         self._updates += 1
         if self._updates % self.params.resample_interval == 0:
             self._resample(points)
 
     def estimate(self) -> ParticleEstimate:
         """Return the heaviest cluster."""
-        return heaviest_cluster(self.particles, self.weights)
+        return self.particles.estimate
 
     def match(self, pose: Pose2, points: Points) -> float:
         """Return the share of points that end at obstacles of the map; 0 … 1."""
@@ -145,9 +149,10 @@ class ParticleFilter:
         count = round(share * len(self.particles))
         if not count or not len(found.poses):
             return
-        order = self._rng.permutation(len(self.particles))[:count]
-        self.particles[order] = self._around(found, count)
-        self.weights = np.full(len(self.particles), 1.0 / len(self.particles))
+        poses = self.particles.poses.copy()
+        order = self._rng.permutation(len(poses))[:count]
+        poses[order] = self._around(found, count)
+        self.particles = Particles.of(poses)
 
     def hypotheses(self, pose: Pose2, points: Points) -> Candidates:
         """Return the poses of the map that explain points as well as ``pose`` does."""
@@ -158,13 +163,13 @@ class ParticleFilter:
         count = self.params.max_particles
         chosen = np.arange(count) % len(found.poses)
         noise = self._rng.normal(size=(count, 3)) * _SEED_STDDEV
-        self.particles = found.poses[chosen] + noise
-        self.weights = np.full(count, 1.0 / count)
+        self.particles = Particles.of(found.poses[chosen] + noise)
 
     def _agreed(self, points: Points) -> Points:
         """Return the points with which enough particles agree; else all."""
         params = self.params
-        near = self._field.agreement(self.particles, points, params.beam_skip_distance)
+        poses = self.particles.poses
+        near = self._field.agreement(poses, points, params.beam_skip_distance)
         kept = near > params.beam_skip_threshold
         skipped = len(points) - np.count_nonzero(kept)
         is_wrong = skipped >= params.beam_skip_error_threshold * len(points)
@@ -188,13 +193,13 @@ class ParticleFilter:
 
     def _resample(self, points: Points) -> None:
         params = self.params
-        drawn = resampled(self.particles, self.weights, params.max_particles, self._rng)
+        poses, weights = self.particles.poses, self.particles.weights
+        drawn = resampled(poses, weights, params.max_particles, self._rng)
         needed = kld_limit(occupied_bins(drawn), params.pf_err, params.pf_z)
         count = min(max(needed, params.min_particles), params.max_particles)
         if count < len(drawn):
-            drawn = resampled(self.particles, self.weights, count, self._rng)
-        self.particles = drawn
-        self.weights = np.full(len(drawn), 1.0 / len(drawn))
+            drawn = resampled(poses, weights, count, self._rng)
+        self.particles = Particles.of(drawn)
         ratio = self._fast / self._slow if self._slow else 1.0
         due = self._updates - self._searched >= _SEARCH_EVERY
         is_worse = ratio < _RECOVERY_RATIO and self._best < GOOD_FIT

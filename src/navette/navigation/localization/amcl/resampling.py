@@ -10,14 +10,15 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.localization.amcl.bins import bin_keys
+
 # Bins of KLD sampling, as Nav2's.
 _BIN_M, _BIN_RAD = 0.5, math.radians(10.0)
 
 
 def occupied_bins(particles: NDArray[np.float64]) -> int:
     """Return the number of bins of x, y, yaw that particles (N, 3) occupy."""
-    bins = np.floor(particles / (_BIN_M, _BIN_M, _BIN_RAD)).astype(np.int64)
-    return len(np.unique(bins, axis=0))
+    return len(np.unique(bin_keys(particles, _BIN_M, _BIN_RAD)))
 
 
 def kld_limit(bins: int, error: float, quantile: float) -> int:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from navette.errors import InvalidInputError, ParameterError, TransformError
-from navette.geometry import Quaternion, Transform3
+from navette.geometry import Quaternion, Transform3, largest_stddev
 from navette.geometry.messages import transform_message
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
@@ -343,9 +343,7 @@ class EkfNode(StageNode):
 
     def _judge(self, estimate: Estimate) -> None:
         """Report whether the filter is lost."""
-        (xx, xy), (_, yy) = estimate.covariance[:2, :2].tolist()
-        largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)  # eigenvalue
-        stddev_m = math.sqrt(max(0.0, largest))
+        stddev_m = largest_stddev(estimate.covariance)
         state = self._consistency.update(stddev_m, estimate.stamp_ns)
         cause = self._consistency.cause
         if cause and self._status.state != state and self.params.publish_status:
