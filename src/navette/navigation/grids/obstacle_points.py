@@ -12,6 +12,8 @@ from navette.geometry import Pose2
 from navette.navigation.grids.spec import FREE, GridSpec
 
 PART = 64  # cells of a row that are searched at once
+# Distance of the points inside filled areas: no body fits between them.
+_INSIDE_M = 0.1
 
 
 def obstacle_points(
@@ -24,6 +26,9 @@ def obstacle_points(
     reach_m: float,
 ) -> NDArray[np.float64]:
     """Return centres (N, 2), metres, map, of the lethal cells within reach of a pose.
+
+    Inside filled areas, as in maps of buildings, only a cell every 0.1 m is returned:
+    from outside, the nearest lethal cell is at the border.
 
     Args:
         cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
@@ -51,6 +56,7 @@ def obstacle_points(
         origin_T_around.y / spec.resolution,
         reach_m / spec.resolution,
         spec.resolution,
+        max(1, int(_INSIDE_M / spec.resolution + 1e-6)),
         *map_T_origin,
     )
 
@@ -104,13 +110,15 @@ def _gather(
     row: float,
     reach: float,
     resolution: float,
+    step: int,
     x: float,
     y: float,
     yaw: float,
 ) -> NDArray[np.float64]:
     """Return lethal cells within ``reach`` of (column, row), all in cells, as points.
 
-    ``x, y, yaw``: pose of the grid's corner in the frame of the points.
+    ``step``: of the cells inside filled areas. ``x, y, yaw``: pose of the grid's corner
+    in the frame of the points.
     """
     top, left = max(0, int(row - reach)), max(0, int(column - reach))
     bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
@@ -128,8 +136,22 @@ def _gather(
                 points = np.concatenate((points, np.empty_like(points)))
             for j in range(line.size):
                 u = first + j + 0.5
-                if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
+                if line[j] < lethal or (u - column) ** 2 + (v - row) ** 2 > reach**2:
+                    continue
+                on_step = i % step == 0 and (first + j) % step == 0
+                if on_step or not _is_inside(cost, i, first + j, lethal):
                     points[count, 0] = x + c * u - s * v
                     points[count, 1] = y + s * u + c * v
                     count += 1
     return points[:count].copy()
+
+
+@kernel(allocates=False)
+def _is_inside(cost: Any, row: int, column: int, lethal: int) -> bool:
+    """Return whether the four cells beside a cell are lethal, too."""
+    height, width = cost.shape
+    if not (0 < row < height - 1 and 0 < column < width - 1):
+        return False
+    across = min(cost[row, column - 1], cost[row, column + 1])
+    along = min(cost[row - 1, column], cost[row + 1, column])
+    return bool(min(across, along) >= lethal)
