@@ -232,8 +232,8 @@ class ObstacleTracker:
 
         The latter if the robot has left the cells that it was near at that map.
         """
-        if self._newest is None or self._seen is None:
-            return None
+        if self._seen is None or self._newest is None or self._seen is self._newest:
+            return self._seen
         needed = _cells_around(around, reach_m, self._newest.spec)
         return self._seen if self._seen_window.contains(needed) else self._newest
 
