@@ -56,7 +56,6 @@ from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_of
-from navette.runtime.worker import Worker
 
 # A stamp this much older than the last fused one belongs to a new run: the simulation
 # was reset, or a bag starts again.
@@ -150,7 +149,6 @@ class MapMemoryNode(StageNode):
         self._trajectories = next(
             each for each in self.subscriptions if each.topic_name == trajectory
         )
-        self.worker = Worker(self)
         self._start()
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
@@ -242,11 +240,6 @@ class MapMemoryNode(StageNode):
         self._tracker.reset()
         self._map_ns = -1
         self._restart()
-
-    def destroy_node(self) -> None:
-        """End the worker, then destroy the node."""
-        self.worker.close()
-        super().destroy_node()
 
     def _new_tracker(self) -> PoseTracker:
         return PoseTracker(self, self.params.base_frame, self.params.map_frame)

@@ -7,6 +7,8 @@ from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
 
 T = TypeVar("T")
 Change = Callable[[MapMemory], T]
+OnRebuilt = Callable[[], None]
+"""Called when a rebuilt map has replaced the present one."""
 
 
 class _Worker(Protocol):
@@ -32,11 +34,10 @@ class RebuildingMemory:
     Args:
         memory: the first map.
         worker: fuses the costmaps.
-        on_rebuilt: called when a rebuilt map has replaced the present one.
     """
 
     def __init__(
-        self, memory: MapMemory, worker: _Worker, *, on_rebuilt: Callable[[], None]
+        self, memory: MapMemory, worker: _Worker, *, on_rebuilt: OnRebuilt
     ) -> None:
         self.memory = memory
         self._worker = worker

@@ -52,7 +52,6 @@ from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import status_output
-from navette.runtime.worker import Worker
 
 # Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
@@ -155,7 +154,6 @@ class PlannerNode(MapReaderNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("planner", **kwargs)
-        self.worker = Worker(self)
         self._tracker = self._new_tracker()
         navigator = Navigator(self.params)
         navigator.planner.warm_up()
@@ -371,11 +369,6 @@ class PlannerNode(MapReaderNode):
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, empty)
         self._report()
-
-    def destroy_node(self) -> None:
-        """End the worker, then destroy the node."""
-        self.worker.close()
-        super().destroy_node()
 
     @property
     def _navigator(self) -> Navigator:

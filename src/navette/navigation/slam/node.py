@@ -38,7 +38,6 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.tf.exceptions import TransformException
-from navette.runtime.worker import Worker
 
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
 # Scans that wait for their odometry; more are older than any wait.
@@ -95,7 +94,6 @@ class SlamNode(StageNode):
         # Programs of Nav2 wait for the node that locates the robot.
         self._lifecycle = StageLifecycle(self, "amcl")
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
-        self.worker = Worker(self)
         self.restart()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
         self._services = SlamMapServices(self, session=self)
@@ -321,8 +319,3 @@ class SlamNode(StageNode):
         renderer, scans = self._renderer, self._slam.placed_scans()
         frame_id, stamp_ns = self.params.map_frame, self._newest_ns
         return lambda: grid_to_message(*renderer.render(scans), frame_id, stamp_ns)
-
-    def destroy_node(self) -> None:
-        """End the worker, then destroy the node."""
-        self.worker.close()
-        super().destroy_node()

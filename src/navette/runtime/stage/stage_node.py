@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar, Self
 
 from navette.errors import (
@@ -29,6 +29,7 @@ from navette.runtime.stage.params import declare_params
 from navette.runtime.stage.stamp_selection import StampSelection
 from navette.runtime.subscription import MessageInfo, Subscription
 from navette.runtime.time import Duration, stamp_to_ns
+from navette.runtime.worker import Worker
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,6 +138,17 @@ class StageNode(Node):
             # may need attributes that do not exist yet.
             Node.destroy_node(self)
             raise
+
+    @cached_property
+    def worker(self) -> Worker:
+        """Runs long computations beside the callbacks; ends with the node."""
+        return Worker(self)
+
+    def destroy_node(self) -> None:
+        """End the worker, then destroy the node."""
+        if "worker" in vars(self):
+            self.worker.close()
+        super().destroy_node()
 
     def _set_up(self) -> None:
         self.params = self.declare_params()

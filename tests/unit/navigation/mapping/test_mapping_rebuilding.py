@@ -16,7 +16,7 @@ SPEC = GridSpec(0.1, 41, 41, Pose2(-2.02, -2.02, 0.0))
 
 
 class SlowWorker:
-    """Computes when it is told to."""
+    """Computes on request."""
 
     def __init__(self) -> None:
         self.waiting: list[tuple[Any, Any, Any]] = []

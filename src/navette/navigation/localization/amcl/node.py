@@ -51,7 +51,6 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
-from navette.runtime.worker import Worker
 
 T = TypeVar("T")
 
@@ -107,9 +106,8 @@ class AmclNode(StageNode):
     def __init__(self, node_name: str = "amcl", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._lifecycle = StageLifecycle(self, "amcl")
-        # A search of a large map takes longer than the robot may be without commands.
-        self._worker = Worker(self)
-        # Of the worker: all that uses it is computed there, in order.
+        # All that uses it is computed in the worker, in order: a search of a large map
+        # takes longer than the robot may be without commands.
         self._localizer: MapLocalizer | None = None
         self._has_map = False
         self._given: tuple[Pose2, NDArray[np.float64]] | None = None
@@ -161,7 +159,7 @@ class AmclNode(StageNode):
         if not self._has_map:
             self._report_missing_map()
             return
-        if not self._lifecycle.is_active or self._worker.is_busy:
+        if not self._lifecycle.is_active or self.worker.is_busy:
             return
         stamp_ns = stamp_to_ns(msg.header.stamp)
         odom_T_base = self._tracker.predicted_at(stamp_ns)
@@ -234,11 +232,6 @@ class AmclNode(StageNode):
         if self._map is not None:
             self._begin(self._map, keeps_pose=False)
 
-    def destroy_node(self) -> None:
-        """End the worker, then destroy the node."""
-        self._worker.close()
-        super().destroy_node()
-
     def _new_tracker(self) -> PoseTracker:
         params = self.params
         return PoseTracker(self, params.base_frame_id, params.odom_frame_id)
@@ -266,7 +259,7 @@ class AmclNode(StageNode):
             return self._localizer.confidence.state
 
         self._has_map = True
-        self._worker.run(begin, self._report)
+        self.worker.run(begin, self._report)
 
     def _use(
         self,
@@ -280,7 +273,7 @@ class AmclNode(StageNode):
             return change(self._localizer)
 
         if self._has_map:
-            self._worker.run(use, finish)
+            self.worker.run(use, finish)
 
     def _report_missing_map(self) -> None:
         """Report once that scans arrive and no map does."""

@@ -36,7 +36,6 @@ from navette.runtime.action import ActionClient
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input
 from navette.runtime.time import ns_to_stamp
-from navette.runtime.worker import Worker
 
 COMPLETE = "complete"
 UNREACHABLE = "unreachable"
@@ -127,7 +126,6 @@ class ExplorerNode(MapReaderNode):
         self._visited: list[Frontier] = []
         self._failures = 0
         self._has_retried = False
-        self._worker = Worker(self)
         self._is_choosing = False
         self.create_timer(_PERIOD_S, self._check)
 
@@ -167,11 +165,6 @@ class ExplorerNode(MapReaderNode):
             self._handle.cancel_goal_async()
         if self.on_done is not None:
             self.on_done()
-
-    def destroy_node(self) -> None:
-        """End the worker, then destroy the node."""
-        self._worker.close()
-        super().destroy_node()
 
     _handle: Any = None
 
@@ -222,7 +215,7 @@ class ExplorerNode(MapReaderNode):
                 self._choose()  # a goal ended meanwhile
 
         self._map.share()
-        self._worker.run(search, use)
+        self.worker.run(search, use)
 
     def _use(self, found: Exploration) -> None:
         """Send the goal of the best frontier, or end."""
