@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.navigation.stack.simulation import Simulation
@@ -58,6 +59,20 @@ def test_an_invalid_goal_is_named_and_the_next_one_driven(
         lambda: simulation.progress().state == "reached", 30 * SECOND
     )
     assert simulation.progress().state == "reached"
+
+
+@pytest.mark.slow
+def test_a_robot_with_a_slow_scanner_starts_anywhere(simulate: MakeSimulation) -> None:
+    """The goal arrives before the first scan makes the map hold the robot."""
+    simulation = simulate(
+        world="empty",
+        robot="turtlebot3_burger",
+        start=Pose2(-60.0, 80.0, 0.0),
+        goals=((-59.0, 80.0),),
+        max_time_s=30.0,
+    )
+    simulation.run()
+    assert [each.result for each in simulation.summary().goals] == ["reached"]
 
 
 @pytest.mark.slow

@@ -175,10 +175,15 @@ class Planner:
         return cost_of(poses, self.grid(), self.params)
 
     def _refusal(self, start: Pose2, goal: Goal) -> Outcome | None:
-        """Return why nothing is planned; the map is enlarged to hold the goal."""
+        """Return why nothing is planned; the map is enlarged to hold start and goal.
+
+        A robot far from the middle of the first map may get a goal before its first
+        costmap is in the map.
+        """
         if not all(map(math.isfinite, (goal.x, goal.y, goal.yaw or 0.0))):
             return Outcome.GOAL_NOT_FINITE
         self.map.hold(goal.x, goal.y)
+        self.map.hold(start.x, start.y)
         if self.grid().cell_of(goal.x, goal.y) is None:
             return Outcome.GOAL_OUTSIDE_MAP
         if self.grid().cell_of(start.x, start.y) is None:

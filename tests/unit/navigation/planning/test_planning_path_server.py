@@ -116,7 +116,7 @@ def test_every_failure_has_a_code_and_a_reason(graph: GraphHarness) -> None:
         ),
         (
             there,
-            {"start": stamped(-50, 4), "use_start": True},
+            {"start": stamped(-650, 4), "use_start": True},
             ToPose.START_OUTSIDE_MAP,
             "start_outside_map",
         ),

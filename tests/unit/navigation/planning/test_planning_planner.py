@@ -155,7 +155,7 @@ def test_a_walled_in_start_is_blocked() -> None:
     [
         (Pose2(1, 1, 0), Goal(601, 1), Outcome.GOAL_OUTSIDE_MAP),
         (Pose2(1, 1, 0), Goal(-595, 1), Outcome.GOAL_OUTSIDE_MAP),
-        (Pose2(9, 1, 0), Goal(1, 1), Outcome.START_OUTSIDE_MAP),
+        (Pose2(601, 1, 0), Goal(1, 1), Outcome.START_OUTSIDE_MAP),
         (Pose2(1, 1, 0), Goal(math.nan, 1), Outcome.GOAL_NOT_FINITE),
         (Pose2(1, 1, 0), Goal(1, math.inf), Outcome.GOAL_NOT_FINITE),
         (Pose2(1, 1, 0), Goal(1, 1, math.nan), Outcome.GOAL_NOT_FINITE),
@@ -165,6 +165,13 @@ def test_invalid_goals_and_starts_have_named_outcomes(
     start: Pose2, goal: Goal, outcome: Outcome
 ) -> None:
     assert planner(*empty_map(6, 6)).plan(start, goal).outcome is outcome
+
+
+def test_a_robot_outside_the_first_map_gets_a_path() -> None:
+    """Its first costmap, which makes the map larger, may arrive after the goal."""
+    plan = planner(*empty_map(6, 6)).plan(Pose2(-90.0, -90.0, 0.0), Goal(-70.0, 90.0))
+    assert plan.outcome is Outcome.OK
+    assert plan.poses[0] == pytest.approx((-90.0, -90.0, 0.0), abs=1e-6)
 
 
 def test_start_in_inflation_and_on_a_phantom_still_has_a_path() -> None:
