@@ -26,7 +26,7 @@ PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
     "dispatch", "network", "calls", "messages", "recording", "stack", "startup",
-    "verbs", "fifty", "gym", "robots", "worlds", "gap",
+    "verbs", "fifty", "gym", "robots", "worlds", "localization", "gap",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",
