@@ -8,18 +8,21 @@ attract each other, and narrows (graduated non-convexity; Blake and Zisserman 19
 Yang et al. 2020). Scans that remain at another maximum of their fit are matched again.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.files.kernels import kernel
 from navette.geometry import Pose2
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.point_map import PointMap, make_point_map
 from navette.navigation.slam.pose_graph import GraphEdge, optimise
-from navette.navigation.slam.refinement import sum_equations
+from navette.navigation.slam.refinement import solve, sum_equations
 from navette.navigation.slam.rematching import rematch_all
 from navette.navigation.slam.scan_graph import ScanGraph
+from navette.navigation.slam.scan_points import Points
 
 Matrix = NDArray[np.float64]
 Pair = tuple[int, int]
@@ -109,24 +112,58 @@ def _pair_edge(
     points = graph.keys[j].points
     if surface is None or not len(points):
         return None
-    present = graph.pose(i).inverse() @ graph.pose(j)
-    information, gradient, quality = np.zeros((3, 3)), np.zeros(3), np.zeros(2)
-    sum_equations(
-        surface,
-        points,
-        np.array(present),
-        params.match_noise_m,
-        surface.cell_m,
-        information,
-        gradient,
-        quality,
+    measured, information = np.empty(3), np.empty((3, 3))
+    poses, noise_m = graph.poses, params.match_noise_m
+    overlap = _match_pair(
+        surface, points, poses[i], poses[j], noise_m, measured, information
     )
-    if quality[0] < params.min_overlap:
+    if overlap < params.min_overlap:
         return None
+    return GraphEdge(i, j, Pose2(*measured.tolist()), information, True)
+
+
+@kernel
+def _match_pair(
+    surface: PointMap,
+    points: Points,
+    first: NDArray[np.float64],
+    second: NDArray[np.float64],
+    noise_m: float,
+    measured: NDArray[np.float64],
+    information: Matrix,
+) -> float:
+    """Write the pose of a scan in the frame of another, corrected by one step.
+
+    Args:
+        surface: of the first scan.
+        points: of the second one.
+        first, second: (3,) their poses.
+        noise_m: standard deviation of a point's distance from the surface.
+
+    Returns:
+        The share of corresponding points; 0 if the step is too large.
+    """
+    c, s = math.cos(first[2]), math.sin(first[2])
+    dx, dy = second[0] - first[0], second[1] - first[1]
+    turn = second[2] - first[2]
+    measured[0], measured[1] = c * dx + s * dy, c * dy - s * dx
+    measured[2] = turn - math.tau * math.floor(turn / math.tau + 0.5)
+    gradient, quality, step = np.empty(3), np.empty(2), np.empty(3)
+    radius = surface.cell_m
+    sum_equations(
+        surface, points, measured, noise_m, radius, information, gradient, quality
+    )
     # Where the pair has no information, the measurement is the present pose.
-    damping = 1e-6 * float(np.trace(information)) + 1e-9
-    x, y, yaw = -np.linalg.solve(information + damping * np.eye(3), gradient)
-    if max(abs(x), abs(y), abs(yaw)) > surface.cell_m:
-        return None
-    measured = Pose2(present.x + x, present.y + y, present.yaw + yaw)
-    return GraphEdge(i, j, measured, information, True)
+    damping = 1e-6 * (information[0, 0] + information[1, 1] + information[2, 2]) + 1e-9
+    damped = information.copy()
+    for k in range(3):
+        damped[k, k] += damping
+        gradient[k] = -gradient[k]
+    if not solve(damped, gradient, step):
+        return 0.0
+    if max(abs(step[0]), abs(step[1]), abs(step[2])) > radius:
+        return 0.0
+    for k in range(3):
+        measured[k] += step[k]
+    overlap: float = quality[0]
+    return overlap

@@ -129,7 +129,7 @@ def _refine_kernel(
         away[2] -= math.tau * math.floor(away[2] / math.tau + 0.5)
         total = information + prior_information
         right = -gradient - prior_information @ away
-        if not _solve(total, right, step):
+        if not solve(total, right, step):
             return
         size = math.sqrt(step[0] * step[0] + step[1] * step[1]) + abs(step[2])
         if size > surface.cell_m:
@@ -294,7 +294,7 @@ def surface_near(
 
 
 @kernel(allocates=False)
-def _solve(
+def solve(
     matrix: Matrix3, right: NDArray[np.float64], solution: NDArray[np.float64]
 ) -> bool:
     """Solve a symmetric positive definite 3 × 3 system by Cholesky's method."""
