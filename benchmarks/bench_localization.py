@@ -19,6 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from factor import factor
 from hall import ends, hall, write_map
 from harness import Benchmark, Figure
 
@@ -52,20 +53,15 @@ def drive(method: str, size_m: int, span_s: float) -> float:
         if method == "amcl":
             options = replace(options, known_map=write_map(size_m, Path(folder)))
         simulation = Simulation(options, scene=hall(size_m))
-    began = time.process_time()
-    simulation.run()
-    seconds = time.process_time() - began
-    simulated = simulation.summary().sim_time_s
-    simulation.close()
-    return simulated / seconds
+    return factor(simulation)
 
 
 def measured(method: str, size_m: int) -> tuple[float, float]:
     """Return the factor and the peak memory (MB) of a drive in a process."""
     command = [sys.executable, __file__, "--drive", method, str(size_m)]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    factor, memory = json.loads(done.stdout.splitlines()[-1])
-    return factor, memory
+    speed, memory = json.loads(done.stdout.splitlines()[-1])
+    return speed, memory
 
 
 def search_s() -> float:
@@ -96,17 +92,17 @@ def search_s() -> float:
 def main() -> None:
     if sys.argv[1:2] == ["--drive"]:
         drive(sys.argv[2], LOADING_M, LOADING_S)
-        factor = drive(sys.argv[2], int(sys.argv[3]), SPAN_S)
+        speed = drive(sys.argv[2], int(sys.argv[3]), SPAN_S)
         peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-        print(json.dumps([factor, peak_mb]))
+        print(json.dumps([speed, peak_mb]))
         return
     bench = Benchmark("localization", __doc__)
     for size in SIZES_M:
         for method in METHODS:
-            factor, memory = measured(method, size)
+            speed, memory = measured(method, size)
             name = f"Jackal, {size} m, {method}"
             for figure in (
-                Figure(f"{name}: factor", factor, "×"),
+                Figure(f"{name}: factor", speed, "×"),
                 Figure(f"{name}: memory", memory, "MB"),
             ):
                 bench.figure(lambda figure=figure: figure)

@@ -11,9 +11,9 @@ a first run in the same process loads the kernels.
 import json
 import subprocess
 import sys
-import time
 
 from courses import SEVEN_GOALS
+from factor import factor
 from harness import Benchmark, Figure
 
 from navette.navigation.stack import RunOptions
@@ -41,13 +41,7 @@ def options(robot: str, span_s: float) -> RunOptions:
 
 def drive(robot: str, span_s: float) -> float:
     """Drive for some time; return the factor."""
-    simulation = Simulation(options(robot, span_s))
-    began = time.process_time()
-    simulation.run()
-    seconds = time.process_time() - began
-    simulated = simulation.summary().sim_time_s
-    simulation.close()
-    return simulated / seconds
+    return factor(Simulation(options(robot, span_s)))
 
 
 def measured(robot: str) -> float:

@@ -13,7 +13,6 @@ import json
 import resource
 import subprocess
 import sys
-import time
 
 from harness import Benchmark, Figure
 
@@ -27,6 +26,7 @@ MEMORY_MB = {200: 450.0}
 
 def drive(robot: str, size_m: int, span_s: float) -> float:
     """Drive for some time, at most to the goal; return the factor."""
+    from factor import factor as cpu_factor
     from hall import ends, hall
 
     from navette.navigation.stack import RunOptions
@@ -43,12 +43,7 @@ def drive(robot: str, size_m: int, span_s: float) -> float:
     )
     parameters = {"control": {"method": "pure_pursuit"}}
     simulation = Simulation(options, scene=hall(size_m), parameters=parameters)
-    began = time.process_time()
-    simulation.run()
-    seconds = time.process_time() - began
-    simulated = simulation.summary().sim_time_s
-    simulation.close()
-    return simulated / seconds
+    return cpu_factor(simulation)
 
 
 def factor(robot: str, size_m: int) -> float:
