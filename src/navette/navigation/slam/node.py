@@ -309,9 +309,11 @@ class SlamNode(StageNode):
         keys = len(self._slam.graph)
         is_new = keys != self._map_keys and self.has_listeners(topics.SLAM_MAP.name)
         if is_new and not self.worker.is_busy:
-            self._map_keys = keys
+            self._map_keys, renderer = keys, self._renderer
             self.worker.run(
-                self.map_drawer(), partial(self.publish, topics.SLAM_MAP.name)
+                self.map_drawer(),
+                partial(self.publish, topics.SLAM_MAP.name),
+                is_dropped=lambda: self._renderer is not renderer,  # another map began
             )
 
     def map_drawer(self) -> Callable[[], OccupancyGrid]:
