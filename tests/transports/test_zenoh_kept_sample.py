@@ -233,7 +233,9 @@ class Loop:
         self._thread.join()
 
     def _run(self) -> None:
-        while not self._is_over.is_set():
+        # Pauses let the thread run that sends what was published during a reply; of
+        # more than ten samples it drops the oldest.
+        while not self._is_over.wait(1e-4):
             self.last += 1
             hand_over(self._port, self.last)
 
