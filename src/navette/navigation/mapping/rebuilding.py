@@ -1,25 +1,15 @@
 """The map fused again in a worker, while the present one is still in use."""
 
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
+from navette.navigation.background import Background
 from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
 
 T = TypeVar("T")
 Change = Callable[[MapMemory], T]
 OnRebuilt = Callable[[], None]
 """Called when a rebuilt map has replaced the present one."""
-
-
-class _Worker(Protocol):
-    def run(
-        self,
-        compute: Callable[[], None],
-        finish: Callable[[None], None],
-        *,
-        is_dropped: Callable[[], bool],
-    ) -> None:
-        """Call ``finish`` with the result of ``compute``, unless ``is_dropped``."""
 
 
 class RebuildingMemory:
@@ -37,7 +27,7 @@ class RebuildingMemory:
     """
 
     def __init__(
-        self, memory: MapMemory, worker: _Worker, *, on_rebuilt: OnRebuilt
+        self, memory: MapMemory, worker: Background, *, on_rebuilt: OnRebuilt
     ) -> None:
         self.memory = memory
         self._worker = worker

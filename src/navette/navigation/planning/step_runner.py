@@ -1,23 +1,12 @@
 """Steps of the navigator in a worker, while the node's callbacks continue."""
 
 from collections.abc import Callable
-from typing import Any, Protocol
 
+from navette.navigation.background import Background
 from navette.navigation.planning.navigator import Navigator
 
 OnStepped = Callable[[], None]
 """Called after every step, in the thread of the callbacks."""
-
-
-class _Worker(Protocol):
-    def run(
-        self,
-        compute: Callable[[], Any],
-        finish: Callable[[Any], None],
-        *,
-        is_dropped: Callable[[], bool],
-    ) -> None:
-        """Call ``finish`` with the result of ``compute``, unless ``is_dropped``."""
 
 
 class StepRunner:
@@ -32,7 +21,7 @@ class StepRunner:
     """
 
     def __init__(
-        self, navigator: Navigator, worker: _Worker, *, on_stepped: OnStepped
+        self, navigator: Navigator, worker: Background, *, on_stepped: OnStepped
     ) -> None:
         self.navigator = navigator
         self._worker = worker

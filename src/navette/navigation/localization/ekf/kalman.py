@@ -54,6 +54,7 @@ def predict(
     _add(later, dt / 6.0, Q)
     _add(later, dt / 6.0 * 4.0, _propagated(half, Q))
     _add(later, dt / 6.0, _propagated(whole, Q))
+    _symmetrise(later)
     return predicted(state, dt), later
 
 
@@ -93,7 +94,7 @@ def correct(
         _solve(lower, gain[i])
     weighted, squared = difference.copy(), 0.0
     _solve(lower, weighted)
-    later, kept = state.copy(), _product(gain, H)
+    later, kept = state.copy(), np.eye(state.size)
     for k in range(rows.size):
         squared += difference[k] * weighted[k]
         for i in range(state.size):
@@ -101,9 +102,11 @@ def correct(
     later[YAW] = wrapped(later[YAW])
     for i in range(state.size):
         for j in range(state.size):
-            kept[i, j] = (1.0 if i == j else 0.0) - kept[i, j]
+            for k in range(rows.size):
+                kept[i, j] -= gain[i, k] * H[k, j]
     corrected = _propagated(kept, prior)
     _add(corrected, 1.0, _propagated(gain, noise))
+    _symmetrise(corrected)
     return squared, difference, S, later, corrected
 
 
@@ -119,16 +122,6 @@ def are_finite(state: Array, covariance: Array) -> bool:
 
 
 @kernel
-def _product(a: Array, b: Array) -> Array:
-    product = np.zeros((a.shape[0], b.shape[1]))
-    for i in range(a.shape[0]):
-        for k in range(a.shape[1]):
-            for j in range(b.shape[1]):
-                product[i, j] += a[i, k] * b[k, j]
-    return product
-
-
-@kernel
 def _by_transposed(a: Array, b: Array) -> Array:
     """Return A Bᵀ; a transposed array would be another type, to be compiled for."""
     product = np.zeros((a.shape[0], b.shape[0]))
@@ -141,12 +134,16 @@ def _by_transposed(a: Array, b: Array) -> Array:
 
 @kernel
 def _propagated(jacobian: Array, covariance: Array) -> Array:
-    """Return J P Jᵀ, exactly symmetric."""
-    full = _by_transposed(_product(jacobian, covariance), jacobian)
-    for i in range(full.shape[0]):
+    """Return J P Jᵀ of a symmetric P."""
+    return _by_transposed(_by_transposed(jacobian, covariance), jacobian)
+
+
+@kernel(allocates=False)
+def _symmetrise(matrix: Array) -> None:
+    """Remove what rounding, and given covariances, differ by from symmetric ones."""
+    for i in range(matrix.shape[0]):
         for j in range(i):
-            full[i, j] = full[j, i] = 0.5 * (full[i, j] + full[j, i])
-    return full
+            matrix[i, j] = matrix[j, i] = 0.5 * (matrix[i, j] + matrix[j, i])
 
 
 @kernel(allocates=False)
