@@ -11,8 +11,11 @@ import numpy as np
 from harness import Benchmark
 
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec
-from navette.navigation.missions.explore.frontiers import FrontierParams, explore
+from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.missions.explore.frontiers import (
+    FrontierParams,
+    FrontierSearch,
+)
 from navette.navigation.planning import (
     Goal,
     NewMap,
@@ -67,6 +70,17 @@ def cells_with(closed: list[Box], opened: list[Box]) -> np.ndarray:
     return cells
 
 
+def new(cells: np.ndarray) -> None:
+    """Look for a frontier in a map that is whole and new."""
+    FrontierSearch.of(cells, SPEC, FrontierParams()).explore((0.0, 0.0))
+
+
+def changed(search: FrontierSearch, part: np.ndarray, window: CellWindow) -> None:
+    """Look for a frontier in a map of which a part, near to the robot, changed."""
+    search.update(part, window)
+    assert search.explore((-48.0, 0.0)).best is not None
+
+
 def main() -> None:
     bench = Benchmark("hard_goals", __doc__)
     for name, (closed, opened, has_path) in CASES.items():
@@ -77,10 +91,16 @@ def main() -> None:
         bench.case(name, {"navette": lambda planner=planner: planner.plan(START, GOAL)})
     known = np.full(SPEC.shape, -1, np.int8)
     known[1748:2348, 1748:2348] = 0
+    bench.case("frontiers of a new map, 30 m known", {"navette": lambda: new(known)})
+    whole = cells_with([], [])
+    search = FrontierSearch.of(whole, SPEC, FrontierParams())
+    window = CellWindow(1800, 2200, 900, 1300)
     bench.case(
-        "frontiers, 30 m known",
-        {"navette": lambda: explore(known, SPEC, (0.0, 0.0), FrontierParams())},
+        "frontiers, 20 m of 200 m changed",
+        {"navette": lambda: changed(search, whole[window.slices], window)},
     )
+    whole[:, : CELLS // 4] = 100
+    bench.case("frontiers of a new map, 200 m known", {"navette": lambda: new(whole)})
     bench.main()
 
 

@@ -7,6 +7,7 @@ to the model's frame, so that the rules of SDF and URDF end at the readers.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -222,6 +223,24 @@ class Model:
 
     def at(self, world_T_model: Transform3) -> "Model":
         return replace(self, world_T_model=world_T_model)
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether any shape is visible; True without shapes."""
+        shapes = [shape for link in self.links for shape in link.geometries]
+        return not shapes or any(shape.visible for shape in shapes)
+
+    def with_shapes(self, change: "ShapeChange") -> "Model":
+        """Return a model with every shape changed."""
+        links = tuple(
+            replace(link, geometries=tuple(map(change, link.geometries)))
+            for link in self.links
+        )
+        return replace(self, links=links)
+
+
+ShapeChange = Callable[[Geometry], Geometry]
+"""Returns the changed shape."""
 
 
 @dataclass(frozen=True)

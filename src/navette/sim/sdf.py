@@ -28,7 +28,7 @@ from navette.sim.sdf_actors import MAX_ACTORS, read_actor
 from navette.sim.sdf_drives import find_drive, note_plugin
 from navette.sim.sdf_poses import PoseGraph, RawPose, read_pose
 from navette.sim.sdf_sensors import read_sensors
-from navette.sim.sdf_shapes import read_geometries, read_inertial
+from navette.sim.sdf_shapes import made_visible, read_geometries, read_inertial
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml
 
 START_FRAME = "robot_start"
@@ -82,7 +82,7 @@ def _read_world(world: XmlNode, path: Path, unsupported: Unsupported) -> Scene:
     for node in world.all("model"):
         if len(raw) >= MAX_MODELS:
             raise node.error(f"more than {MAX_MODELS} models")
-        model = _read_model(node, unsupported)
+        model = made_visible(_read_model(node, unsupported), node, unsupported)
         pose = read_pose(node)
         graph.add(model.name, pose)
         for link in model.links:

@@ -13,6 +13,7 @@ from navette.sim.scene import (
     Ellipsoid,
     Geometry,
     Inertial,
+    Model,
     Plane,
     Shape,
     Sphere,
@@ -43,7 +44,11 @@ _GAZEBO_COLOURS: dict[str, Colour] = {
 def read_geometries(
     link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
 ) -> tuple[Geometry, ...]:
-    """Read collisions and visuals; a visual equal to a collision is merged with it."""
+    """Read collisions and visuals; a visual equal to a collision is merged with it.
+
+    If no visual has a supported shape, such as those of meshes, the collisions are
+    visible instead.
+    """
     collisions: list[Geometry] = []
     visuals: list[Geometry] = []
     for kind, found in (("collision", collisions), ("visual", visuals)):
@@ -53,6 +58,8 @@ def read_geometries(
                 continue
             pose = graph.resolve_in(link_name, read_pose(node))
             found.append(_geometry(node, shape, pose, collides=kind == "collision"))
+    if not visuals and link.find("visual") is not None:
+        collisions = [replace(shape, visible=True) for shape in collisions]
     return merge_geometries(collisions, visuals)
 
 
@@ -108,6 +115,18 @@ def merge_geometries(
             )
         merged.append(collision)
     return (*merged, *left)
+
+
+def made_visible(model: Model, node: XmlNode, unsupported: Unsupported) -> Model:
+    """Make collisions visible in an obstacle without any visual.
+
+    A range sensor of Gazebo that is simulated by rendering detects visuals only, so the
+    robot would drive into it.
+    """
+    if model.is_visible or model.drive is not None:
+        return model
+    unsupported.note_change("model without <visual>: sensors detect <collision>", node)
+    return model.with_shapes(lambda shape: replace(shape, visible=True))
 
 
 def _coincide(a: Geometry, b: Geometry) -> bool:

@@ -22,7 +22,7 @@ from navette.sim.scene import (
 from navette.sim.sdf_drives import find_drive
 from navette.sim.sdf_poses import PoseGraph
 from navette.sim.sdf_sensors import read_sensors
-from navette.sim.sdf_shapes import merge_geometries
+from navette.sim.sdf_shapes import made_visible, merge_geometries
 from navette.sim.urdf_shapes import Materials, read_urdf_geometry
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml
 
@@ -57,13 +57,7 @@ def _solid(model: Model) -> Model:
     """Make visuals solid in a model without any collision, made for viewing."""
     if any(g.collides for link in model.links for g in link.geometries):
         return model
-    links = tuple(
-        replace(
-            link, geometries=tuple(replace(g, collides=True) for g in link.geometries)
-        )
-        for link in model.links
-    )
-    return replace(model, links=links)
+    return model.with_shapes(lambda shape: replace(shape, collides=True))
 
 
 def _read(path: Path) -> Model:
@@ -88,8 +82,10 @@ def _read(path: Path) -> Model:
     )
     plugins = (p for node in root.all("gazebo") for p in node.all("plugin"))
     drive = find_drive(plugins, unsupported)
+    model = Model(name=root.name(), links=links, joints=joints, drive=drive)
+    model = made_visible(model, root, unsupported)
     unsupported.report()
-    return Model(name=root.name(), links=links, joints=joints, drive=drive)
+    return model
 
 
 def _origin(owner: XmlNode) -> Transform3:

@@ -101,7 +101,7 @@ class XmlNode:
 
 
 class Unsupported:
-    """Collects ignored elements; logs each kind once after reading the file."""
+    """Collects what a reader cannot follow; logs each kind once after reading."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -109,19 +109,18 @@ class Unsupported:
         self._line: dict[str, int] = {}
 
     def note(self, kind: str, node: XmlNode) -> None:
-        self._count[kind] += 1
-        self._line.setdefault(kind, node.line)
+        """Note an element that is ignored."""
+        self.note_change(f"not supported, ignored: {kind}", node)
+
+    def note_change(self, text: str, node: XmlNode) -> None:
+        """Note an element that is read as another."""
+        self._count[text] += 1
+        self._line.setdefault(text, node.line)
 
     def report(self) -> None:
-        for kind, count in self._count.items():
+        for text, count in self._count.items():
             more = f" (and {count - 1} more)" if count > 1 else ""
-            _log.warning(
-                "%s:%d: not supported, ignored: %s%s",
-                self._path,
-                self._line[kind],
-                kind,
-                more,
-            )
+            _log.warning("%s:%d: %s%s", self._path, self._line[text], text, more)
 
 
 @dataclass(frozen=True)

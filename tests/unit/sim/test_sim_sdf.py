@@ -145,6 +145,41 @@ def test_equal_collision_and_visual_become_one_shape(tmp_path: Path) -> None:
     assert seen.colour[2] > seen.colour[0]
 
 
+@pytest.mark.parametrize(
+    ("links", "visible", "is_reported"),
+    [
+        (f"<link name='a'><collision name='c'>{BOX}</collision></link>", [True], True),
+        (
+            f"<link name='a'><collision name='c'>{BOX}</collision></link>"
+            f"<link name='b'><visual name='v'>{BOX}</visual></link>",
+            [False, True],
+            False,
+        ),
+        (
+            f"<link name='a'><collision name='c'>{BOX}</collision><visual name='v'>"
+            "<geometry><mesh><uri>x.dae</uri></mesh></geometry></visual></link>"
+            f"<link name='b'><visual name='v'>{BOX}</visual></link>",
+            [True, True],
+            False,
+        ),
+    ],
+    ids=["no visual", "another link has one", "the visual is a mesh"],
+)
+def test_collisions_are_visible_if_no_visual_stands_for_them(
+    tmp_path: Path,
+    caplog: pytest.LogCaptureFixture,
+    links: str,
+    visible: list[bool],
+    is_reported: bool,
+) -> None:
+    """Otherwise the robot would drive into what its lidar cannot detect."""
+    with caplog.at_level(logging.WARNING):
+        scene = _read(tmp_path, _model(links))
+    shapes = [shape for link in scene.models[0].links for shape in link.geometries]
+    assert [shape.visible for shape in shapes] == visible
+    assert ("sensors detect <collision>" in caplog.text) is is_reported
+
+
 def test_sensors(tmp_path: Path) -> None:
     scene = _read(
         tmp_path,

@@ -70,13 +70,17 @@ def _explore() -> None:
     """Find the frontiers of a room with one side open."""
     from navette.geometry import Pose2
     from navette.navigation.grids import FREE, LETHAL, UNKNOWN, GridSpec
-    from navette.navigation.missions.explore.frontiers import FrontierParams, explore
+    from navette.navigation.missions.explore.frontiers import (
+        FrontierParams,
+        FrontierSearch,
+    )
 
     spec = GridSpec(0.1, 80, 80, Pose2(0.0, 0.0, 0.0))
     cells = np.full(spec.shape, UNKNOWN, np.int8)
     cells[9:61, 9:60] = LETHAL
     cells[10:60, 10:60] = FREE
-    if not explore(cells, spec, (3.0, 3.0), FrontierParams()).frontiers:
+    search = FrontierSearch.of(cells, spec, FrontierParams())
+    if search.explore((3.0, 3.0)).best is None:
         raise RuntimeError("no frontier: kernels of exploration were not called")
 
 

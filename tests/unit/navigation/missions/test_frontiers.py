@@ -1,6 +1,7 @@
 """Frontiers of small maps drawn as text."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +9,12 @@ import pytest
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import CellWindow, GridSpec
 from navette.navigation.missions.explore.frontiers import (
+    Exploration,
+    Frontier,
     FrontierParams,
-    explore,
-    is_open,
+    FrontierSearch,
 )
 
 # One cell is 0.5 m. "#" occupied, "." free, " " unknown; the first line is the top.
@@ -27,11 +29,34 @@ def grid(*lines: str) -> tuple[NDArray[np.int8], GridSpec]:
     return cells, spec
 
 
+def explore(
+    cells: NDArray[np.int8],
+    spec: GridSpec,
+    robot: tuple[float, float],
+    params: FrontierParams,
+    **avoided: Sequence[Frontier],
+) -> Exploration:
+    return FrontierSearch.of(cells, spec, params).explore(robot, **avoided)
+
+
+def in_turn(
+    cells: NDArray[np.int8],
+    spec: GridSpec,
+    robot: tuple[float, float],
+    params: FrontierParams,
+) -> list[Frontier]:
+    """Return all frontiers that can be reached, the best first."""
+    search = FrontierSearch.of(cells, spec, params)
+    found: list[Frontier] = []
+    while (best := search.explore(robot, failed=found).best) is not None:
+        found.append(best)
+    return found
+
+
 def test_a_closed_room_has_no_frontier() -> None:
     cells, spec = grid("######", "#....#", "#....#", "#....#", "######")
     found = explore(cells, spec, (1.25, 1.25), PARAMS)
-    assert found.frontiers == ()
-    assert (found.unreachable, found.open_share) == (0, 0.0)
+    assert (found.best, found.count, found.open_share) == (None, 0, 0.0)
     assert found.free_m2 == pytest.approx(12 * 0.25)
     assert found.known_m2 == pytest.approx(30 * 0.25)
 
@@ -44,8 +69,11 @@ def test_an_opening_is_a_frontier_with_a_goal_in_front_of_it() -> None:
         "#........ ",
         "##########",
     )
-    found = explore(cells, spec, (1.25, 1.25), PARAMS)
-    (frontier,) = found.frontiers
+    search = FrontierSearch.of(cells, spec, PARAMS)
+    found = search.explore((1.25, 1.25))
+    frontier = found.best
+    assert frontier is not None
+    assert found.count == 1
     assert frontier.middle == pytest.approx((4.25, 1.25))
     assert frontier.length_m == pytest.approx(1.5)
     x, y = frontier.goal
@@ -53,9 +81,9 @@ def test_an_opening_is_a_frontier_with_a_goal_in_front_of_it() -> None:
     assert 0.9 <= y <= 1.6
     assert frontier.way_m == pytest.approx(x - 1.25)
     assert 0.0 < found.open_share < 0.5
-    assert is_open(cells, spec, frontier, PARAMS)
-    cells[1:4, 9] = 0
-    assert not is_open(cells, spec, frontier, PARAMS)
+    assert search.is_open(frontier)
+    search.update(np.zeros((3, 1), np.int8), CellWindow(1, 4, 9, 10))
+    assert not search.is_open(frontier)
 
 
 def test_the_way_leads_around_walls_and_the_nearer_frontier_is_first() -> None:
@@ -70,15 +98,14 @@ def test_the_way_leads_around_walls_and_the_nearer_frontier_is_first() -> None:
         "#.....#...#....#",
         "#         #    #",
     )
-    found = explore(
-        cells, spec, (4.25, 2.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0, 10.0)
-    )
-    ways = [each.way_m for each in found.frontiers]
+    params = FrontierParams(0.4, 100, 0.9, 1.5, 0.0, 10.0)
+    frontiers = in_turn(cells, spec, (4.25, 2.25), params)
+    ways = [each.way_m for each in frontiers]
     assert ways == sorted(ways)
     # The room on the left is behind walls.
-    assert found.unreachable == 1
-    assert len(found.frontiers) == 3
-    right = next(each for each in found.frontiers if each.middle[0] > 5.0
+    assert len(frontiers) == 3
+    assert explore(cells, spec, (4.25, 2.25), params).count == 4
+    right = next(each for each in frontiers if each.middle[0] > 5.0
                  and each.middle[1] < 2.0)  # fmt: skip
     assert right.way_m > math.dist((4.25, 2.25), right.goal) + 0.8
 
@@ -94,31 +121,33 @@ def test_longer_frontiers_are_worth_a_longer_way() -> None:
     long = explore(
         cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 3.0, 10.0)
     )
-    assert near.frontiers[0].length_m < long.frontiers[0].length_m
+    assert near.best is not None
+    assert long.best is not None
+    assert near.best.length_m < long.best.length_m
 
 
 def test_frontiers_that_failed_are_avoided() -> None:
     cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
-    (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
+    (frontier,) = in_turn(cells, spec, (1.25, 1.25), PARAMS)
     found = explore(cells, spec, (1.25, 1.25), PARAMS, failed=[frontier])
-    assert (found.frontiers, found.unreachable) == ((), 1)
+    assert (found.best, found.count) == (None, 1)
 
 
 def test_a_visited_frontier_is_seen_from_another_place_only() -> None:
     cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
-    (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
+    (frontier,) = in_turn(cells, spec, (1.25, 1.25), PARAMS)
     found = explore(cells, spec, (1.25, 1.25), PARAMS, visited=[frontier])
-    assert (found.frontiers, found.unreachable) == ((), 1)
+    assert (found.best, found.count) == (None, 1)
     elsewhere = replace(frontier, goal=(frontier.goal[0] - 1.0, frontier.goal[1]))
     again = explore(cells, spec, (1.25, 1.25), PARAMS, visited=[elsewhere])
-    assert again.frontiers == (frontier,)
+    assert again.best == frontier
 
 
 def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:
     cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
-    assert len(explore(cells, spec, (0.75, 0.75), PARAMS).frontiers) == 1
+    assert explore(cells, spec, (0.75, 0.75), PARAMS).best is not None
     outside = explore(cells, spec, (-50.0, 0.75), PARAMS)
-    assert (outside.frontiers, outside.unreachable) == ((), 1)
+    assert (outside.best, outside.count) == (None, 1)
 
 
 def test_a_frontier_is_seen_from_its_own_side_of_a_wall() -> None:
@@ -134,8 +163,8 @@ def test_a_frontier_is_seen_from_its_own_side_of_a_wall() -> None:
         "          .....#",
         "################",
     )
-    found = explore(cells, spec, (1.25, 2.75), PARAMS)
-    frontier = min(found.frontiers, key=lambda each: each.middle[1])
+    frontiers = in_turn(cells, spec, (1.25, 2.75), PARAMS)
+    frontier = min(frontiers, key=lambda each: each.middle[1])
     assert frontier.goal[0] > 5.0
     assert frontier.goal[1] < 2.0
 
@@ -143,15 +172,16 @@ def test_a_frontier_is_seen_from_its_own_side_of_a_wall() -> None:
 def test_a_long_frontier_is_divided() -> None:
     lines = ["#" + "." * 30 + "#"] * 3
     cells, spec = grid("#" * 32, *lines, " " * 32)
-    found = explore(cells, spec, (1.25, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
-    assert len(found.frontiers) == 4
-    assert sum(each.length_m for each in found.frontiers) == pytest.approx(15.0)
-    assert all(abs(each.goal[0] - each.middle[0]) < 1.1 for each in found.frontiers)
+    params = FrontierParams(0.4, 100, 0.9, 1.5, 0.0)
+    frontiers = in_turn(cells, spec, (1.25, 1.25), params)
+    assert len(frontiers) == 4
+    assert sum(each.length_m for each in frontiers) == pytest.approx(15.0)
+    assert all(abs(each.goal[0] - each.middle[0]) < 1.1 for each in frontiers)
 
 
-@pytest.mark.parametrize(("passage_m", "reached"), [(0.4, 1), (0.9, 0)])
+@pytest.mark.parametrize(("passage_m", "reached"), [(0.4, True), (0.9, False)])
 def test_a_frontier_behind_a_door_is_reached_if_the_robot_fits(
-    passage_m: float, reached: int
+    passage_m: float, reached: bool
 ) -> None:
     """The door is too narrow to look from, but not to pass."""
     room = ["#" + "." * 23 + "#"] * 5
@@ -159,7 +189,7 @@ def test_a_frontier_behind_a_door_is_reached_if_the_robot_fits(
     cells[1:6, 24] = -1  # the frontier, in the lower room
     params = FrontierParams(0.9, 100, 0.9, 1.5, 0.0, 10.0, passage_m)
     found = explore(cells, spec, (3.25, 5.25), params)
-    assert len(found.frontiers) == reached
+    assert (found.best is not None) is reached
 
 
 def test_unknown_cells_around_the_map_change_nothing() -> None:
@@ -176,5 +206,5 @@ def test_unknown_cells_around_the_map_change_nothing() -> None:
     shift = Pose2(-7 * 0.5, -4 * 0.5, 0.0)
     larger_spec = GridSpec(0.5, larger.shape[1], larger.shape[0], corner @ shift)
     found = explore(cells, spec, (1.25, 1.25), PARAMS)
-    assert len(found.frontiers) == 2
+    assert found.count == 2
     assert explore(larger, larger_spec, (1.25, 1.25), PARAMS) == found

@@ -8,26 +8,32 @@ robot).
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from navette.navigation.grids import UNKNOWN, CellWindow, GridSpec, distance_field
+from navette.navigation.grids import CellWindow, GridSpec
+from navette.navigation.grids.spec import Cells
+from navette.navigation.missions.explore.cell_kinds import (
+    OPEN,
+    PLACE,
+    CellIndices,
+    CellKinds,
+    KindDistances,
+)
 from navette.navigation.missions.explore.waves import (
     UNREACHED,
-    CellIndices,
-    Mask,
+    Reached,
     connected_sets,
     first_that_sees,
     steps_from,
     steps_to,
 )
 
-Cells = NDArray[np.int8]
 _WALL_M = 0.1
 """Cells as near to an obstacle belong to it: thickness and noise of walls."""
+_FIRST_STEPS = 200  # each further search goes twice as far
 
 
 @dataclass(frozen=True)
@@ -71,143 +77,224 @@ class Exploration:
     """State of the exploration.
 
     Attributes:
-        frontiers: reachable ones, the best first.
-        unreachable: number of frontiers that the robot cannot get near to.
+        best: the frontier to drive to; None if none can be reached.
+        count: number of frontiers, including unreachable ones.
         free_m2: known free area.
         known_m2: known area.
         open_share: share of the free space's boundary that is frontier.
     """
 
-    frontiers: tuple[Frontier, ...]
-    unreachable: int
+    best: Frontier | None
+    count: int
     free_m2: float
     known_m2: float
     open_share: float
 
 
-def explore(
-    cells: Cells,
-    spec: GridSpec,
-    robot: tuple[float, float],
-    params: FrontierParams,
-    *,
-    failed: Sequence[Frontier] = (),
-    visited: Sequence[Frontier] = (),
-) -> Exploration:
-    """Return the frontiers of a map, the best first, and the explored area.
+class FrontierSearch:
+    """The frontiers of a map that is explored.
 
-    Args:
-        cells: (H, W) occupancy, -1 unknown, 0 free to 100 occupied.
-        spec: geometry of the grid.
-        robot: position of the robot, m, map.
-        failed: frontiers that were not reached; those near to them are left out.
-        visited: frontiers that were still there when their goal was reached. Those near
-            to them are left out unless they are to be seen from another place.
+    The work of an update grows with the part that changed, that of a search with the
+    distance to the frontier that it finds.
     """
-    window = CellWindow.of_known(cells).grown(1, cells.shape)
-    corner = np.array((window.first_row, window.first_column))
-    known = np.ascontiguousarray(cells[window.slices])
-    free, occupied, away = _layers(known, spec.resolution, params)
-    open_edge = _open_edge(known, free, away)
-    closed_edge = free & _beside(occupied) & ~open_edge
-    open_cells, closed_cells = 0, int(closed_edge.sum())
-    # A start within the clearance of an obstacle leaves it through free cells.
-    passable = free & (away >= min(params.passage_m, params.clearance_m))
-    row, column = (spec.cell_of(*robot) - corner).tolist()
-    steps = steps_from((row, column), free, passable)
-    steps[away < params.clearance_m] = UNREACHED  # passed, but no place to look from
-    longest = max(1, round(params.max_length_m / spec.resolution))
-    found, unreachable = [], 0
-    for cluster in connected_sets(open_edge):
-        if len(cluster) * spec.resolution < params.min_length_m:
-            continue
-        open_cells += len(cluster)
-        for piece in _pieces(cluster, longest):
-            frontier = _viewpoint(piece, free, occupied, steps, spec, corner, params)
-            if frontier is not None and _is_hopeless(
-                frontier, failed, visited, params.viewpoint_m / 4
-            ):
-                frontier = None
-            if frontier is None:
-                unreachable += 1
-            else:
-                found.append(frontier)
-    found.sort(key=lambda each: (each.way_m - params.gain * each.length_m, each.goal))
-    cell_m2 = spec.resolution**2
-    total = open_cells + closed_cells
-    return Exploration(
-        frontiers=tuple(found),
-        unreachable=unreachable,
-        free_m2=float(free.sum()) * cell_m2,
-        known_m2=float((known >= 0).sum()) * cell_m2,
-        open_share=open_cells / total if total else 0.0,
-    )
+
+    def __init__(self, spec: GridSpec, params: FrontierParams) -> None:
+        self._map = CellKinds(spec, _distances(params), params.lethal_cost)
+        self._spec, self._params = spec, params
+
+    @classmethod
+    def of(
+        cls, cells: Cells, spec: GridSpec, params: FrontierParams
+    ) -> "FrontierSearch":
+        """Return the search of a whole map.
+
+        Args:
+            cells: (H, W) occupancy, -1 unknown, 0 free to 100 occupied.
+            spec: geometry of the grid.
+            params: values of the choice.
+        """
+        search = cls(spec, params)
+        known = CellWindow.of_known(cells)
+        search.update(cells[known.slices], known)
+        return search
+
+    def update(self, cells: Cells, window: CellWindow) -> None:
+        """Replace the cells (h, w) of a window of the map."""
+        if not window.is_empty:
+            self._map.update(cells, window)
+
+    def set_params(self, params: FrontierParams) -> None:
+        """Use other values; ``lethal_cost`` is that of the beginning."""
+        if _distances(params) != _distances(self._params):
+            self._map.set_distances(_distances(params))
+        self._params = params
+
+    def explore(
+        self,
+        robot: tuple[float, float],
+        *,
+        failed: Sequence[Frontier] = (),
+        visited: Sequence[Frontier] = (),
+        first_steps: int = _FIRST_STEPS,
+    ) -> Exploration:
+        """Return the best frontier and the explored area.
+
+        Args:
+            robot: position of the robot, m, map.
+            failed: frontiers that were not reached; those near to them are left out.
+            visited: frontiers that were still there when their goal was reached. Those
+                near to them are left out unless they are seen from another place.
+            first_steps: cells that the search goes at first; the result is the same.
+        """
+        resolution = self._spec.resolution
+        cells = self._map.cells_of(OPEN, self._map.known)
+        least = math.ceil(self._params.min_length_m / resolution - 1e-9)
+        sets = connected_sets(cells, max(least, 1))
+        longest = max(1, round(self._params.max_length_m / resolution))
+        pieces = [piece for cluster in sets for piece in _pieces(cluster, longest)]
+        open_cells = sum(map(len, pieces))
+        total = open_cells + self._map.closed
+        free, occupied = self._map.free, self._map.occupied
+        return Exploration(
+            best=self._best(pieces, robot, first_steps, failed, visited),
+            count=len(pieces),
+            free_m2=free * resolution**2,
+            known_m2=(free + occupied) * resolution**2,
+            open_share=open_cells / total if total else 0.0,
+        )
+
+    def is_open(self, frontier: Frontier) -> bool:
+        """Return whether a good part of a frontier is left near to its middle."""
+        resolution, least_m = self._spec.resolution, self._params.min_length_m
+        row, column = self._spec.cell_of(*frontier.middle)
+        reach = round(max(least_m, frontier.length_m / 4) / resolution) + 1
+        near = CellWindow(row, row + 1, column, column + 1)
+        near = near.grown(reach, self._map.kinds.shape)
+        left_m = len(self._map.cells_of(OPEN, near)) * resolution
+        return left_m >= min(least_m, frontier.length_m) / 2
+
+    def _best(
+        self,
+        pieces: Sequence[CellIndices],
+        robot: tuple[float, float],
+        limit: int,
+        failed: Sequence[Frontier],
+        visited: Sequence[Frontier],
+    ) -> Frontier | None:
+        """Return the best frontier that can be reached, searching further and further.
+
+        It is the best of the whole map: frontiers beyond the cells reached have a
+        longer path, and none is longer than the longest piece.
+        """
+        row, column = self._spec.cell_of(*robot)
+        resolution, gain = self._spec.resolution, self._params.gain
+        most_m = gain * max(map(len, pieces), default=0) * resolution
+        # The least possible scores: as if there were no obstacles.
+        steps = [self._least_steps(piece, row, column) for piece in pieces]
+        least = np.array(steps) - gain * np.array([*map(len, pieces)])
+        order = np.argsort(least, kind="stable").tolist()
+        while pieces:
+            reached = steps_from((row, column), self._map.kinds, limit)
+            settled = UNREACHED if reached.is_all else limit - 2 * self._reach
+            best = None
+            for k in order:
+                if best is not None and self._score(best) < least[k] * resolution:
+                    break
+                if steps[k] > settled:
+                    continue
+                found = self._frontier(pieces[k], reached, settled)
+                if found is None or self._is_hopeless(found, failed, visited):
+                    continue
+                if best is None or self._key(found) < self._key(best):
+                    best = found
+            if reached.is_all:
+                return best
+            if best is not None and self._score(best) < settled * resolution - most_m:
+                return best
+            limit *= 2
+        return None
+
+    @property
+    def _reach(self) -> int:
+        """Largest number of steps between a frontier and its goal."""
+        return round(self._params.viewpoint_m / self._spec.resolution)
+
+    def _score(self, frontier: Frontier) -> float:
+        """Return the path (m) less what the frontier is worth; the least is best."""
+        return frontier.way_m - self._params.gain * frontier.length_m
+
+    def _key(self, frontier: Frontier) -> tuple[float, tuple[float, float]]:
+        return self._score(frontier), frontier.goal
+
+    def _least_steps(self, piece: CellIndices, row: int, column: int) -> int:
+        """Return a lower bound of the steps from a cell to the goal of a piece."""
+        apart = np.maximum(piece.min(axis=0) - (row, column), 0)
+        apart = np.maximum(apart, (row, column) - piece.max(axis=0))
+        return max(int(apart.max()) - self._reach, 0)
+
+    def _frontier(
+        self, piece: CellIndices, reached: Reached, settled: int
+    ) -> Frontier | None:
+        """Return a piece with the nearest point that sees half of it.
+
+        The distance is along free cells, from the frontier and from its middle. Points
+        to which the path leads far around an obstacle are not used, so that points
+        beyond the cells reached make no difference; None if the first one is more than
+        ``settled`` steps from the robot.
+        """
+        off = steps_to(piece, self._map.kinds, self._reach)
+        steps = reached.within(off.window)
+        places = (self._map.kinds[off.window.slices] & PLACE) != 0
+        is_candidate = places & (steps < UNREACHED) & (off.steps < UNREACHED)
+        if not is_candidate.any():
+            return None
+        first = int(steps[is_candidate].min())
+        if first > settled:
+            return None
+        candidates = np.argwhere(is_candidate & (steps <= first + 2 * self._reach))
+        away = off.steps[candidates[:, 0], candidates[:, 1]]
+        candidates += (off.window.first_row, off.window.first_column)
+        mean = piece.mean(axis=0)
+        middle = piece[np.argmin(((piece - mean) ** 2).sum(axis=1))]
+        aside = np.hypot(*(candidates - middle).T)
+        candidates = candidates[np.argsort(away + aside, kind="stable")]
+        least = (len(piece) + 1) // 2
+        best = first_that_sees(candidates, piece, self._map.kinds, least)
+        if best < 0:
+            return None
+        row, column = candidates[best]
+        goal, centre = self._spec.centers_of(np.array([(row, column), middle])).tolist()
+        way = steps[row - off.window.first_row, column - off.window.first_column]
+        return Frontier(
+            goal=tuple(goal),
+            middle=tuple(centre),
+            length_m=len(piece) * self._spec.resolution,
+            way_m=float(way) * self._spec.resolution,
+        )
+
+    def _is_hopeless(
+        self,
+        frontier: Frontier,
+        failed: Sequence[Frontier],
+        visited: Sequence[Frontier],
+    ) -> bool:
+        """Whether another drive to the frontier promises nothing."""
+        near_m = self._params.viewpoint_m / 4
+        return any(
+            math.dist(frontier.middle, each.middle) <= near_m for each in failed
+        ) or any(
+            math.dist(frontier.middle, each.middle) <= near_m
+            and math.dist(frontier.goal, each.goal) <= near_m
+            for each in visited
+        )
 
 
-def is_open(
-    cells: Cells, spec: GridSpec, frontier: Frontier, params: FrontierParams
-) -> bool:
-    """Return whether a good part of a frontier is left near to its middle."""
-    row, column = spec.cell_of(*frontier.middle)
-    radius_m = max(params.min_length_m, frontier.length_m / 4)
-    reach = round(radius_m / spec.resolution) + 1
-    edge = reach + round(_WALL_M / spec.resolution) + 1  # cells whose walls count
-    rows = slice(max(row - edge, 0), max(row + edge + 1, 0))
-    columns = slice(max(column - edge, 0), max(column + edge + 1, 0))
-    part = cells[rows, columns]
-    if not part.size:
-        return False
-    free, _, away = _layers(part, spec.resolution, params)
-    left = np.argwhere(_open_edge(part, free, away))
-    middle = row - rows.start, column - columns.start
-    near = int((np.abs(left - middle).max(axis=1) <= reach).sum()) if len(left) else 0
-    return near * spec.resolution >= min(params.min_length_m, frontier.length_m) / 2
+def _distances(params: FrontierParams) -> KindDistances:
+    passage_m = min(params.passage_m, params.clearance_m)
+    return KindDistances(_WALL_M, passage_m, params.clearance_m)
 
 
-def _layers(
-    cells: Cells, resolution: float, params: FrontierParams
-) -> tuple[Mask, Mask, NDArray[np.float32]]:
-    """Return free cells, occupied cells, and the distance to occupied ones (m)."""
-    occupied = cells >= params.lethal_cost
-    reach_m = max(params.clearance_m, _WALL_M) + resolution
-    away = distance_field(occupied.astype(np.uint8), resolution, reach_m)
-    return (cells >= 0) & ~occupied, occupied, away
-
-
-def _open_edge(cells: Cells, free: Mask, away: NDArray[np.float32]) -> Mask:
-    """Return the cells of frontiers: free, beside unknown ones, not within a wall.
-
-    A wall is a line of occupied cells with gaps; behind it are cells that are known by
-    their inflation only.
-    """
-    return free & _beside(cells == UNKNOWN) & (away > _WALL_M)
-
-
-def _is_hopeless(
-    frontier: Frontier,
-    failed: Sequence[Frontier],
-    visited: Sequence[Frontier],
-    near_m: float,
-) -> bool:
-    """Whether another drive to the frontier promises nothing."""
-    return any(math.dist(frontier.middle, e.middle) <= near_m for e in failed) or any(
-        math.dist(frontier.middle, e.middle) <= near_m
-        and math.dist(frontier.goal, e.goal) <= near_m
-        for e in visited
-    )
-
-
-def _beside(mask: Mask) -> Mask:
-    """Return the cells that have a true cell left, right, above or below."""
-    found = np.zeros_like(mask)
-    found[1:] |= mask[:-1]
-    found[:-1] |= mask[1:]
-    found[:, 1:] |= mask[:, :-1]
-    found[:, :-1] |= mask[:, 1:]
-    return found
-
-
-def _pieces(cells: CellIndices, longest: int) -> list[CellIndices]:
+def _pieces(cells: CellIndices, longest: int) -> Iterator[CellIndices]:
     """Divide a frontier until no piece is longer than ``longest`` cells a side.
 
     The middle of a long frontier, such as one around a whole room, need not have a view
@@ -216,47 +303,9 @@ def _pieces(cells: CellIndices, longest: int) -> list[CellIndices]:
     extent = np.ptp(cells, axis=0)
     axis = int(np.argmax(extent))
     if extent[axis] < longest:
-        return [cells]
+        yield cells
+        return
     middle = (cells[:, axis].min() + cells[:, axis].max()) / 2
     low = cells[:, axis] <= middle
-    return [*_pieces(cells[low], longest), *_pieces(cells[~low], longest)]
-
-
-def _viewpoint(
-    piece: CellIndices,
-    free: Mask,
-    occupied: Mask,
-    steps: NDArray[np.int32],
-    spec: GridSpec,
-    corner: CellIndices,
-    params: FrontierParams,
-) -> Frontier | None:
-    """Return the frontier with the nearest reachable point that sees half of it.
-
-    The distance is along free cells, from the frontier and from its middle. ``corner``
-    is the cell of the map that is the first of these arrays.
-    """
-    reach = round(params.viewpoint_m / spec.resolution)
-    low = np.maximum(piece.min(axis=0) - reach, 0)
-    high = piece.max(axis=0) + reach + 1
-    window = slice(low[0], high[0]), slice(low[1], high[1])
-    off = steps_to(piece - low, free[window], reach)
-    candidates = np.argwhere((steps[window] < UNREACHED) & (off < UNREACHED))
-    off = off[candidates[:, 0], candidates[:, 1]]
-    mean = piece.mean(axis=0)
-    middle = piece[np.argmin(((piece - mean) ** 2).sum(axis=1))]
-    aside = np.hypot(*(candidates + low - middle).T)
-    candidates = candidates[np.argsort(off + aside, kind="stable")]
-    best = first_that_sees(
-        candidates, piece - low, occupied[window], (len(piece) + 1) // 2
-    )
-    if best < 0:
-        return None
-    row, column = candidates[best] + low
-    goal, centre = spec.centers_of(np.array([(row, column), middle]) + corner).tolist()
-    return Frontier(
-        goal=tuple(goal),
-        middle=tuple(centre),
-        length_m=len(piece) * spec.resolution,
-        way_m=float(steps[row, column]) * spec.resolution,
-    )
+    yield from _pieces(cells[low], longest)
+    yield from _pieces(cells[~low], longest)

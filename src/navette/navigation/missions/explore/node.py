@@ -5,27 +5,28 @@ frontier has been seen. Exploration ends with a reason: ``complete`` (no frontie
 left), ``unreachable`` (the remaining ones cannot be driven to), ``no_map``,
 ``no_server``, ``canceled`` (someone cancelled or replaced a goal).
 
-Searches for frontiers run in a worker: with the system clock the callbacks of the node
-continue meanwhile.
+The map is searched for frontiers in a worker: with the system clock the callbacks of
+the node continue meanwhile.
 """
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from navette.msgs import topics
 from navette.msgs.action_msgs.msg import GoalStatus
 from navette.msgs.geometry_msgs.msg import PoseStamped, Quaternion
 from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.navigation.grids import MapPart, ReceivedMap
+from navette.navigation.grids import GridSpec, MapPart
+from navette.navigation.grids.spec import Cells
 from navette.navigation.missions.explore.frontiers import (
     Exploration,
     Frontier,
-    explore,
-    is_open,
+    FrontierParams,
+    FrontierSearch,
 )
 from navette.navigation.missions.explore.params import ExplorerParams
 from navette.navigation.servers.map_reader_node import (
@@ -88,10 +89,22 @@ class ExplorationReport:
         return json.dumps(values)
 
 
+class _WholeMap(NamedTuple):
+    """Cells of a map that are not changed, and their geometry."""
+
+    cells: Cells
+    spec: GridSpec
+
+
+_Change = MapPart | _WholeMap | FrontierParams
+"""A part of the map that changed, or all of it, or new parameters."""
+
+
 class ExplorerNode(MapReaderNode):
     """Send goals at frontiers until the map is complete."""
 
     PARAMS = ExplorerParams
+    FIXED_AT_START = ("lethal_cost",)
     INPUTS = (
         Input.of(topics.MAP, "the map whose frontiers are explored", callback="on_map"),
         MAP_UPDATES_INPUT,
@@ -126,7 +139,10 @@ class ExplorerNode(MapReaderNode):
         self._visited: list[Frontier] = []
         self._failures = 0
         self._has_retried = False
-        self._is_choosing = False
+        #: Used by the worker only.
+        self._search: FrontierSearch | None = None
+        self._changes: list[_Change] = []  # that the search has not got yet
+        self._is_searching = False
         self.create_timer(_PERIOD_S, self._check)
 
     @property
@@ -135,13 +151,17 @@ class ExplorerNode(MapReaderNode):
 
     def on_new_map(self, part: MapPart | None) -> None:
         """Choose the next goal if there is none or its frontier has been seen."""
-        assert self._map is not None, "a map has arrived"
-        self._map.update(part)
+        if part is None:
+            self._changes.clear()
+        self._changes.append(self._whole_map if part is None else part)
         if self._started_ns is None:
             self._started_ns = self._now_ns
-        target = self._target
-        if target is None or not self._is_open(target):
-            self._choose()
+        self._choose()
+
+    @property
+    def _whole_map(self) -> "_WholeMap":
+        assert self._maps.map is not None, "a map has arrived"
+        return _WholeMap(self._maps.map.cells, self._maps.map.spec)
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's position and the distance driven."""
@@ -169,10 +189,6 @@ class ExplorerNode(MapReaderNode):
     _handle: Any = None
 
     @property
-    def _map(self) -> ReceivedMap | None:
-        return self._maps.map
-
-    @property
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
 
@@ -181,50 +197,66 @@ class ExplorerNode(MapReaderNode):
         if self.done:
             return
         if waited_s >= self.params.map_timeout_s:
-            if self._map is None:
+            if self._maps.map is None:
                 self.end(NO_MAP)
             elif not self._client.server_is_ready() and self._target is None:
                 self.end(NO_SERVER)
-        if not self.done and self._target is None and self._map is not None:
+        if not self.done and self._target is None and self._maps.map is not None:
             self._choose()
 
-    def _is_open(self, target: Frontier) -> bool:
-        assert self._map is not None, "a target comes from a map"
-        return is_open(self._map.cells, self._map.spec, target, self.params.frontier)
-
     def _choose(self) -> None:
-        """Search for frontiers, unless that is under way, and use the result."""
-        if self.done or self._position is None or self._map is None:
+        """Search for frontiers unless that of the goal is left, and use the result."""
+        if self.done or self._is_searching:
             return
-        if self._is_choosing:
-            return
-        self._is_choosing = True
-        here, cells, spec = self._position, self._map.cells, self._map.spec
+        self._is_searching = True
+        changes, self._changes = self._changes, []
+        here, target = self._position, self._target
+        params = self.params.frontier
         failed, visited = tuple(self._failed), tuple(self._visited)
 
-        def search() -> Exploration:
-            return explore(
-                cells, spec, here, self.params.frontier, failed=failed, visited=visited
-            )
+        def search() -> Exploration | None:
+            searched = self._updated(changes, params)
+            if here is None or (target is not None and searched.is_open(target)):
+                return None
+            return searched.explore(here, failed=failed, visited=visited)
 
-        def use(found: Exploration) -> None:
-            self._is_choosing = False
-            if (failed, visited) == (tuple(self._failed), tuple(self._visited)):
+        def use(found: Exploration | None) -> None:
+            self._is_searching = False
+            ended = (failed, visited) != (tuple(self._failed), tuple(self._visited))
+            if found is not None and not ended:
                 self._use(found)
-            else:
-                self._choose()  # a goal ended meanwhile
+            if self._changes or ended:
+                self._choose()
 
-        self._map.share()
         self.worker.run(search, use)
+
+    def on_params_changed(self, old: ExplorerParams) -> None:
+        """Use the new values from the next search on."""
+        self._changes.append(self.params.frontier)
+
+    def _updated(
+        self, changes: Sequence[_Change], params: FrontierParams
+    ) -> FrontierSearch:
+        """Return the search after changes of the map."""
+        for change in changes:
+            if isinstance(change, _WholeMap):
+                self._search = FrontierSearch.of(*change, params)
+            elif isinstance(change, MapPart):
+                assert self._search is not None, "the first map is whole"
+                self._search.update(*change)
+            elif self._search is not None:
+                self._search.set_params(change)
+        assert self._search is not None, "a map has arrived"
+        return self._search
 
     def _use(self, found: Exploration) -> None:
         """Send the goal of the best frontier, or end."""
         if self.done:
             return
         self._note(found)
-        if found.frontiers:
+        if found.best is not None:
             self._maps_without_frontier = 0
-            self._send(found.frontiers[0])
+            self._send(found.best)
         else:
             self._target = None
             self._end_if_sure(found)
@@ -237,14 +269,14 @@ class ExplorerNode(MapReaderNode):
             return
         self._maps_without_frontier += 1
         if self._maps_without_frontier >= _MAPS_TO_BE_SURE and found.free_m2 > 0:
-            self.end(UNREACHABLE if found.unreachable else COMPLETE)
+            self.end(UNREACHABLE if found.count else COMPLETE)
 
     def _note(self, found: Exploration) -> None:
         self._update(
             coverage=1.0 - found.open_share,
             free_m2=found.free_m2,
             known_m2=found.known_m2,
-            frontiers_left=len(found.frontiers) + found.unreachable,
+            frontiers_left=found.count,
         )
 
     def _update(self, **values: Any) -> None:

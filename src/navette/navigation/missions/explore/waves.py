@@ -1,69 +1,105 @@
 """Distances along cells, connected sets and lines of sight in a grid."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.navigation.grids import NO_CELLS, CellWindow
+from navette.navigation.missions.explore.cell_kinds import (
+    FREE,
+    OCCUPIED,
+    PASSABLE,
+    CellIndices,
+    Kinds,
+)
 
-Mask = NDArray[np.bool_]
-CellIndices = NDArray[np.int64]
 UNREACHED = np.iinfo(np.int32).max
 
 
-def steps_from(
-    start: tuple[int, int], first: Mask, then: Mask, limit: int = UNREACHED
-) -> NDArray[np.int32]:
-    """Return the number of steps (H, W) from a cell; ``UNREACHED`` beyond ``limit``.
+class Reached(NamedTuple):
+    """Cells that a wave reached.
+
+    Attributes:
+        steps: (h, w) number of steps to the cells of ``window``, or ``UNREACHED``.
+        window: a part of the map.
+        is_all: whether no cell is further away than the wave went.
+    """
+
+    steps: NDArray[np.int32]
+    window: CellWindow
+    is_all: bool
+
+    def within(self, window: CellWindow) -> NDArray[np.int32]:
+        """Return the steps to the cells of another window of the map."""
+        found = np.full(window.shape, UNREACHED, np.int32)
+        top, bottom, left, right = self.window
+        both = CellWindow(
+            max(top, window.first_row),
+            min(bottom, window.last_row),
+            max(left, window.first_column),
+            min(right, window.last_column),
+        )
+        if not both.is_empty:
+            here = both.shifted(-window.first_row, -window.first_column)
+            found[here.slices] = self.steps[both.shifted(-top, -left).slices]
+        return found
+
+
+def steps_from(start: tuple[int, int], kinds: Kinds, limit: int) -> Reached:
+    """Return the cells within ``limit`` steps from a cell, which may be outside.
 
     Steps alternate between four and eight neighbours, so that their number is near to
-    the Euclidean distance (octagonal distance).
-
-    Args:
-        start: the cell of the robot, which may be outside the grid.
-        first: (H, W) cells that may be crossed until the first one of ``then``,
-            which is a part of them.
-        then: (H, W) cells that may be crossed from there on.
+    the Euclidean distance (octagonal distance). They lead through free cells until the
+    first passable one, and from there on through passable ones.
     """
-    steps = np.full(then.shape, UNREACHED, np.int32)
-    height, width = then.shape
-    if 0 <= start[0] < height and 0 <= start[1] < width:
-        sources = np.array([start], np.int64)
-        _spread(steps, sources, first, then, bool(then[start]), limit)
-    return steps
+    row, column = start
+    cell = CellWindow(row, row + 1, column, column + 1)
+    if cell.grown(0, kinds.shape) != cell:
+        return Reached(np.empty((0, 0), np.int32), NO_CELLS, is_all=True)
+    sources = np.array([start], np.int64)
+    return _spread_from(sources, kinds, cell.grown(limit, kinds.shape), limit, PASSABLE)
 
 
-def steps_to(sources: CellIndices, free: Mask, limit: int) -> NDArray[np.int32]:
-    """Return the number of steps (H, W) through free cells to the sources (N, 2)."""
-    steps = np.full(free.shape, UNREACHED, np.int32)
-    _spread(steps, sources, free, free, True, limit)
-    return steps
+def steps_to(sources: CellIndices, kinds: Kinds, limit: int) -> Reached:
+    """Return the cells within ``limit`` steps through free cells to the sources."""
+    window = CellWindow.of_cells(sources).grown(limit, kinds.shape)
+    return _spread_from(sources, kinds, window, limit, FREE)
 
 
-def connected_sets(mask: Mask) -> list[CellIndices]:
-    """Return the connected sets (eight neighbours) of true cells, as (N, 2) indices.
+def _spread_from(
+    sources: CellIndices, kinds: Kinds, window: CellWindow, limit: int, then: int
+) -> Reached:
+    steps = np.full(window.shape, UNREACHED, np.int32)
+    is_all = _spread(kinds, window, steps, sources, then, limit)
+    return Reached(steps, window, bool(is_all))
 
-    The order depends on the map only.
+
+def connected_sets(cells: CellIndices, least: int) -> list[CellIndices]:
+    """Return the connected sets (eight neighbours) of at least so many cells.
+
+    ``cells`` and each of the sets are in the order of the rows.
     """
-    cells = np.argwhere(mask)
     if not len(cells):
         return []
-    labels = np.full(mask.shape, -1, np.int32)
-    count = _label(cells, mask, labels)
-    of_cell = labels[cells[:, 0], cells[:, 1]]
-    order = np.argsort(of_cell, kind="stable")
-    ends = np.searchsorted(of_cell[order], np.arange(1, count))
-    return np.split(cells[order], ends)
+    labels = np.empty(len(cells), np.int64)
+    count = _label(cells, np.empty(len(cells), np.int64), labels)
+    sizes = np.bincount(labels, minlength=count)
+    is_large = sizes[labels] >= least
+    cells, labels = cells[is_large], labels[is_large]
+    cells = cells[np.argsort(labels, kind="stable")]
+    ends = np.cumsum(sizes[sizes >= least])
+    return np.split(cells, ends[:-1]) if len(ends) else []
 
 
 @kernel
-def first_that_sees(candidates: Any, cells: Any, occupied: Any, least: int) -> Any:
+def first_that_sees(candidates: Any, cells: Any, kinds: Any, least: int) -> Any:
     """Return the index of the first candidate that sees ``least`` of the cells.
 
     Args:
         candidates, cells: (N, 2), (K, 2) indices.
-        occupied: (H, W) cells that end a line of sight.
+        kinds: (H, W); an occupied cell ends a line of sight.
 
     If none sees as many, return the one that sees most; -1 if none sees any.
     """
@@ -71,7 +107,7 @@ def first_that_sees(candidates: Any, cells: Any, occupied: Any, least: int) -> A
     for i in range(len(candidates)):
         seen = 0
         for k in range(len(cells)):
-            if _is_clear(candidates[i], cells[k], occupied):
+            if _is_clear(candidates[i], cells[k], kinds):
                 seen += 1
         if seen > most:
             best, most = i, seen
@@ -81,79 +117,123 @@ def first_that_sees(candidates: Any, cells: Any, occupied: Any, least: int) -> A
 
 
 @kernel
-def _is_clear(begin: Any, end: Any, occupied: Any) -> Any:
+def _is_clear(begin: Any, end: Any, kinds: Any) -> Any:
     """Return whether no cell of the line between two cells is occupied."""
     count = max(abs(end[0] - begin[0]), abs(end[1] - begin[1]))
     for i in range(1, count):
         row = begin[0] + int(np.rint(i * (end[0] - begin[0]) / count))
         column = begin[1] + int(np.rint(i * (end[1] - begin[1]) / count))
-        if occupied[row, column]:
+        if (kinds[row, column] & OCCUPIED) != 0:
             return False
     return True
 
 
 @kernel
 def _spread(
-    steps: Any, sources: Any, first: Any, then: Any, has_left: Any, limit: Any
-) -> None:
-    """Write the steps of a wave that starts in the sources."""
-    queue = np.empty((steps.size, 2), np.int32)
-    begin, end = 0, 0
+    kinds: Any, window: CellWindow, steps: Any, sources: Any, then: int, limit: int
+) -> Any:
+    """Write the steps of a wave from the sources; return whether it ended by itself.
+
+    The wave crosses free cells until its first cell of the kind ``then``, and from
+    there on cells of that kind.
+    """
+    top, left = window.first_row, window.first_column
+    here = np.empty((max(len(sources), 64), 2), np.int32)
+    count, size = 0, 0
+    has_left = False
     for i in range(len(sources)):
-        if steps[sources[i, 0], sources[i, 1]] != 0:
-            steps[sources[i, 0], sources[i, 1]] = 0
-            queue[end] = sources[i]
-            end += 1
-    count = 0
-    while begin < end and count < limit:
+        row, column = sources[i, 0] - top, sources[i, 1] - left
+        if steps[row, column] != 0:
+            steps[row, column] = 0
+            here[size, 0], here[size, 1] = row, column
+            size += 1
+            has_left |= (kinds[sources[i, 0], sources[i, 1]] & then) != 0
+    there = np.empty((64, 2), np.int32)
+    while size > 0 and count < limit:
         count += 1
-        layer_end = end
-        for i in range(begin, layer_end):
-            allowed = then if has_left else first
-            end = _visit(queue[i], count, steps, allowed, queue, end)
-        begin = layer_end
-        for i in range(begin, end):
-            has_left = has_left or then[queue[i, 0], queue[i, 1]]
+        if len(there) < 8 * size:
+            there = np.empty((16 * size, 2), np.int32)
+        crossed = then if has_left else FREE
+        found = 0
+        for i in range(size):
+            found = _visit(here[i], count, steps, kinds, window, crossed, there, found)
+        if not has_left:
+            for i in range(found):
+                kind = kinds[there[i, 0] + top, there[i, 1] + left]
+                has_left |= (kind & then) != 0
+        here, there, size = there, here, found
+    return size == 0
 
 
-@kernel
+@kernel(allocates=False)
 def _visit(
-    cell: Any, count: Any, steps: Any, allowed: Any, queue: Any, end: Any
+    cell: Any,
+    count: int,
+    steps: Any,
+    kinds: Any,
+    window: CellWindow,
+    crossed: int,
+    queue: Any,
+    end: int,
 ) -> Any:
     """Append the neighbours of a cell that were not reached to the queue."""
-    height, width = steps.shape
-    for row in range(max(cell[0] - 1, 0), min(cell[0] + 2, height)):
-        for column in range(max(cell[1] - 1, 0), min(cell[1] + 2, width)):
-            is_corner = row != cell[0] and column != cell[1]
-            if is_corner and count % 2 == 1:
-                continue
-            if allowed[row, column] and steps[row, column] == UNREACHED:
-                steps[row, column] = count
-                queue[end, 0], queue[end, 1] = row, column
-                end += 1
+    row, column = cell
+    down, right = (-1, 1, 0, 0, -1, -1, 1, 1), (0, 0, -1, 1, -1, 1, -1, 1)
+    for k in range(4 if count % 2 == 1 else 8):
+        # Negative ones become very large.
+        r, c = np.uintp(row + down[k]), np.uintp(column + right[k])
+        if r >= steps.shape[0] or c >= steps.shape[1] or steps[r, c] != UNREACHED:
+            continue
+        at = r + np.uintp(window.first_row), c + np.uintp(window.first_column)
+        if (kinds[at] & crossed) != 0:
+            steps[r, c] = count
+            queue[end, 0], queue[end, 1] = r, c
+            end += 1
     return end
 
 
-@kernel
-def _label(cells: Any, mask: Any, labels: Any) -> Any:
-    """Write the number of its connected set into each cell; return their count."""
-    height, width = mask.shape
-    stack = np.empty((len(cells), 2), np.int32)
+@kernel(allocates=False)
+def _label(cells: Any, parents: Any, labels: Any) -> Any:
+    """Write the number of its connected set for each cell; return their count.
+
+    The sets are numbered in the order of their first cells.
+    """
+    begin = above = end_above = 0  # of the row, and of the row above it
+    for i in range(len(cells)):
+        parents[i] = i
+        row, column = cells[i]
+        if i == 0 or cells[i - 1, 0] != row:
+            above = begin if i > 0 and cells[i - 1, 0] == row - 1 else i
+            begin = end_above = i
+        elif cells[i - 1, 1] == column - 1:
+            _join(parents, i - 1, i)
+        while above < end_above and cells[above, 1] < column - 1:
+            above += 1
+        k = above
+        while k < end_above and cells[k, 1] <= column + 1:
+            _join(parents, k, i)
+            k += 1
     count = 0
     for i in range(len(cells)):
-        if labels[cells[i, 0], cells[i, 1]] >= 0:
-            continue
-        stack[0, 0], stack[0, 1] = cells[i, 0], cells[i, 1]
-        labels[cells[i, 0], cells[i, 1]] = count
-        size = 1
-        while size > 0:
-            size -= 1
-            row, column = stack[size, 0], stack[size, 1]
-            for r in range(max(row - 1, 0), min(row + 2, height)):
-                for c in range(max(column - 1, 0), min(column + 2, width)):
-                    if mask[r, c] and labels[r, c] < 0:
-                        labels[r, c] = count
-                        stack[size, 0], stack[size, 1] = r, c
-                        size += 1
-        count += 1
+        first = _first(parents, i)
+        if first == i:
+            labels[i] = count
+            count += 1
+        else:
+            labels[i] = labels[first]
     return count
+
+
+@kernel(allocates=False)
+def _join(parents: Any, a: int, b: int) -> None:
+    """Unite the sets of two cells under the first cell of both."""
+    a, b = _first(parents, a), _first(parents, b)
+    parents[max(a, b)] = min(a, b)
+
+
+@kernel(allocates=False)
+def _first(parents: Any, i: int) -> Any:
+    while parents[i] != i:
+        parents[i] = parents[parents[i]]
+        i = parents[i]
+    return i
