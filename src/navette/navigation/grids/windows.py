@@ -101,6 +101,15 @@ class CellWindow(NamedTuple):
             max(self.last_column, other.last_column),
         )
 
+    def intersection(self, other: "CellWindow") -> "CellWindow":
+        """Return the window of the cells that are in both; may be empty."""
+        return CellWindow(
+            max(self.first_row, other.first_row),
+            min(self.last_row, other.last_row),
+            max(self.first_column, other.first_column),
+            min(self.last_column, other.last_column),
+        )
+
     def shifted(self, rows: int, columns: int) -> "CellWindow":
         """Return the same cells in a grid that begins so many cells earlier."""
         return CellWindow(

@@ -1,9 +1,16 @@
-"""Zones of a mask on another grid."""
+"""Keep-out zones of a mask on another grid, and a map that contains them."""
+
+from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids.spec import LETHAL, GridSpec
+from navette.files.kernels import kernel
+from navette.navigation.grids.received_map import ReceivedMap
+from navette.navigation.grids.sparse import copied
+from navette.navigation.grids.spec import LETHAL, Cells, GridFrame, GridSpec, grid_frame
+from navette.navigation.grids.windows import CellWindow
 
 
 class KeepOutZones:
@@ -14,32 +21,77 @@ class KeepOutZones:
         spec: geometry of the cells in the map frame.
     """
 
-    def __init__(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
-        self.cells, self.spec = cells, spec
-        self._on: tuple[GridSpec, NDArray[np.bool_]] | None = None
+    def __init__(self, cells: Cells, spec: GridSpec) -> None:
+        self._cells, self._spec = cells, spec
+        self._corners = _corners(cells, spec)
 
-    def on(self, spec: GridSpec) -> NDArray[np.bool_]:
-        """Return (H, W) whether the cells of a grid lie in a zone."""
-        if self._on is None or self._on[0] != spec:
-            self._on = spec, self._looked_up(spec)
-        return self._on[1]
+    def mark(self, occupancy: Cells, spec: GridSpec, window: CellWindow) -> None:
+        """Make cells of a map (H, W) lethal that lie in a zone and in a window."""
+        if not len(self._corners):
+            return
+        near = CellWindow.around(spec, self._corners, margin=1)
+        mask_T_grid = self._spec.origin.inverse() @ spec.origin
+        grid = GridSpec(spec.resolution, spec.width, spec.height, mask_T_grid)
+        edge_m = self._spec.resolution
+        window = window.intersection(near)
+        _mark(occupancy, grid_frame(grid), self._cells, edge_m, window)
 
-    def marked(self, occupancy: NDArray[np.int8], spec: GridSpec) -> NDArray[np.int8]:
-        """Return a copy of a map (H, W) whose cells in zones are lethal."""
-        marked = occupancy.copy()
-        marked[self.on(spec)] = LETHAL
-        return marked
 
-    def _looked_up(self, spec: GridSpec) -> NDArray[np.bool_]:
-        found = np.zeros(spec.shape, np.bool_)
-        columns = (np.arange(spec.width) + 0.5) * spec.resolution
-        map_T_grid, mask_T_map = spec.origin, self.spec.origin.inverse()
-        for row in range(spec.height):
-            v = np.full(spec.width, (row + 0.5) * spec.resolution)
-            on_map = map_T_grid.apply(np.column_stack([columns, v]))
-            uv = np.floor(mask_T_map.apply(on_map) / self.spec.resolution)
-            column, line = uv.astype(np.int64).T
-            inside = (column >= 0) & (column < self.spec.width)
-            inside &= (line >= 0) & (line < self.spec.height)
-            found[row, inside] = self.cells[line[inside], column[inside]] >= LETHAL
-        return found
+def _corners(cells: Cells, spec: GridSpec) -> NDArray[np.float64]:
+    """Return (4, 2) corners of a rectangle in the map (m) that contains all zones."""
+    is_lethal = cells >= LETHAL
+    rows = np.flatnonzero(is_lethal.any(axis=1))
+    columns = np.flatnonzero(is_lethal.any(axis=0))
+    if not len(rows):
+        return np.empty((0, 2))
+    edges = product((columns[0], columns[-1] + 1), (rows[0], rows[-1] + 1))
+    return spec.origin.apply(np.array(list(edges)) * spec.resolution)
+
+
+class ZonedMap:
+    """A received map with keep-out zones, updated where the map changed."""
+
+    def __init__(self, zones: KeepOutZones) -> None:
+        self._zones = zones
+        self._received: ReceivedMap | None = None
+        self._is_own = False
+
+    def share(self) -> None:
+        """Leave the array to others that still use it."""
+        self._is_own = False
+
+    def update(self, received: ReceivedMap, changed: CellWindow) -> Cells:
+        """Return the cells (H, W) of a map and of the zones.
+
+        Args:
+            received: the map.
+            changed: where it differs from the last call, if it is the same map.
+        """
+        if received is not self._received:
+            self._received, self._cells = received, copied(received.cells)
+            changed = CellWindow.whole(received.cells.shape)
+        elif changed.is_empty:
+            return self._cells
+        elif not self._is_own:
+            self._cells = copied(self._cells)
+        self._is_own = True
+        self._cells[changed.slices] = received.cells[changed.slices]
+        self._zones.mark(self._cells, received.spec, changed)
+        return self._cells
+
+
+@kernel(allocates=False)
+def _mark(
+    occupancy: Any, frame: GridFrame, mask: Any, edge_m: float, window: CellWindow
+) -> None:
+    """Mark cells whose centres are in zones; ``frame`` is the grid in the mask's."""
+    height, width = mask.shape
+    for row in range(window.first_row, window.last_row):
+        y = (row + 0.5) * frame.resolution
+        for column in range(window.first_column, window.last_column):
+            x = (column + 0.5) * frame.resolution
+            u = (frame.x + frame.cos * x - frame.sin * y) / edge_m
+            v = (frame.y + frame.sin * x + frame.cos * y) / edge_m
+            is_inside = 0.0 <= u < width and 0.0 <= v < height
+            if is_inside and mask[int(v), int(u)] >= LETHAL:
+                occupancy[row, column] = LETHAL

@@ -9,7 +9,9 @@ from navette.msgs.nav2_dynamic_msgs.msg import ObstacleArray
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import PointCloud2
 from navette.navigation.grids import (
+    NO_CELLS,
     NO_DISCS,
+    CellWindow,
     HitPoints,
     MapPart,
     MapReader,
@@ -20,7 +22,8 @@ from navette.navigation.grids import (
 )
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.received_map import out_of_range
-from navette.navigation.grids.zones import KeepOutZones
+from navette.navigation.grids.spec import Cells
+from navette.navigation.grids.zones import KeepOutZones, ZonedMap
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.new_map import NewMap
 from navette.navigation.planning.planning_grid import NO_HITS
@@ -35,6 +38,7 @@ class MapChange(NamedTuple):
     received: ReceivedMap
     part: MapPart | None
     hits: NDArray[np.float64]
+    zoned: ZonedMap | None
 
     def apply(self, navigator: Navigator, *, is_shared: bool) -> None:
         """Update the map of the navigator.
@@ -46,9 +50,17 @@ class MapChange(NamedTuple):
         if is_shared:
             navigator.planner.map.detach()
             self.received.share()
+            if self.zoned is not None:
+                self.zoned.share()
         changed = self.received.update(self.part)
-        cells, spec = self.received.cells, self.received.spec
-        navigator.set_map(NewMap(cells, spec, self.hits, changed))
+        cells = _with_zones(self.received, self.zoned, changed)
+        navigator.set_map(NewMap(cells, self.received.spec, self.hits, changed))
+
+
+def _with_zones(
+    received: ReceivedMap, zoned: ZonedMap | None, changed: CellWindow = NO_CELLS
+) -> Cells:
+    return received.cells if zoned is None else zoned.update(received, changed)
 
 
 class MapInputs:
@@ -63,7 +75,7 @@ class MapInputs:
     def __init__(self, maps: MapReader) -> None:
         self._maps = maps
         self._hits = HitPoints()
-        self._zones: KeepOutZones | None = None
+        self._zoned: ZonedMap | None = None
         self._moving = MovingDiscs(NO_DISCS, 0)
 
     @property
@@ -77,12 +89,11 @@ class MapInputs:
             stamp_ns = self._hits.receive(msg)
         return self.has_map and stamp_ns == self._maps.stamp_ns
 
-    def receive_zones(self, msg: OccupancyGrid, map_frame: str) -> KeepOutZones:
-        """Store and return the keep-out zones."""
+    def receive_zones(self, msg: OccupancyGrid, map_frame: str) -> None:
+        """Store the keep-out zones, for the next change of the map."""
         check_frame("keep-out zones", msg.header.frame_id, map_frame)
         with out_of_range():
-            self._zones = KeepOutZones(*grid_from_message(msg))
-        return self._zones
+            self._zoned = ZonedMap(KeepOutZones(*grid_from_message(msg)))
 
     def receive_moving(self, msg: ObstacleArray, map_frame: str) -> None:
         """Store the moving obstacles."""
@@ -95,15 +106,14 @@ class MapInputs:
     def change(self, part: MapPart | None) -> MapChange:
         """Return the change from the map before to the newest; None: all is new."""
         assert self._maps.map is not None, "called with a map"
-        return MapChange(self._maps.map, part, self._newest_hits())
+        return MapChange(self._maps.map, part, self._newest_hits(), self._zoned)
 
     def restore(self, navigator: Navigator) -> None:
         """Give a new navigator the map and zones that arrived so far."""
         known = self._maps.map
         if known is not None:
-            navigator.set_map(NewMap(known.cells, known.spec, self._newest_hits()))
-        if self._zones is not None:
-            navigator.keep_out(self._zones)
+            cells = _with_zones(known, self._zoned)
+            navigator.set_map(NewMap(cells, known.spec, self._newest_hits()))
 
     def _newest_hits(self) -> NDArray[np.float64]:
         hits = self._hits.at(self._maps.stamp_ns)

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from navette.geometry import Pose2, angle_difference
-from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.new_map import NewMap
@@ -66,7 +65,6 @@ class Navigator:
         self.report = NavigatorReport()
         self._map: NewMap | None = None
         self._avoided = AvoidedPlaces()
-        self._zones: KeepOutZones | None = None
         self._has_map = False
         self._map_changed = False
         self._goal: Goal | None = None
@@ -101,15 +99,8 @@ class Navigator:
         new = self._map if new is None else new
         if new is not None:
             marked = self._avoided.marked(new.cells, new.spec)
-            if self._zones is not None:
-                marked = self._zones.marked(marked, new.spec)
             self.planner.set_map(new._replace(cells=marked))
             self._has_map = self._map_changed = True
-
-    def keep_out(self, zones: KeepOutZones) -> None:
-        """Plan around zones; the next step checks the path against them."""
-        self._zones = zones
-        self._apply_map()
 
     def avoid_place(self) -> bool:
         """Plan around the place where the robot got stuck; False if there is none."""

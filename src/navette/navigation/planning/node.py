@@ -213,9 +213,9 @@ class PlannerNode(MapReaderNode):
 
     def on_keepout_zones(self, msg: OccupancyGrid) -> None:
         """Plan around zones; a path through them is replaced at once."""
-        zones = self._space.receive_zones(msg, self.params.map_frame)
-        self._runner.change(lambda: self._navigator.keep_out(zones))
-        self.on_timer()
+        self._space.receive_zones(msg, self.params.map_frame)
+        if self._space.has_map:
+            self.on_new_map(None)
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; detect arrival at once."""

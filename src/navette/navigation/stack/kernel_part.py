@@ -31,8 +31,14 @@ def mark_of(part: str) -> str:
 
 
 def compile_planning() -> None:
-    """Compile the kernels of the planner."""
+    """Compile the kernels of the planner and of keep-out zones."""
+    from navette.navigation.grids import CellWindow, GridSpec
+    from navette.navigation.grids.zones import KeepOutZones
+
     _make("planner")
+    cells, spec = np.zeros((2, 2), np.int8), GridSpec(1.0, 2, 2)
+    cells[0] = 100
+    KeepOutZones(cells, spec).mark(cells, spec, CellWindow.whole(cells.shape))
 
 
 def compile_driving() -> None:

@@ -9,7 +9,7 @@ from navette.geometry import Pose2
 from navette.geometry.map_files import OccupancyMap, write_occupancy_map
 from navette.msgs.nav2_msgs.msg import CostmapFilterInfo, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.navigation.grids import GridSpec, grid_from_message
+from navette.navigation.grids import CellWindow, GridSpec, grid_from_message
 from navette.navigation.grids.zones import KeepOutZones
 from navette.navigation.mapping.zones import FilterMask
 from navette.navigation.mapping.zones.node import ZonesNode
@@ -58,7 +58,8 @@ def test_zones_lie_on_other_grids() -> None:
     spec = GridSpec(1.0, 2, 1, Pose2(1.0, 0.0, math.pi / 2))
     zones = KeepOutZones(np.array([[0, 100]], np.int8), spec)
     fine = GridSpec(0.5, 6, 6, Pose2(-0.5, 0.0, 0.0))
-    marked = zones.marked(np.zeros(fine.shape, np.int8), fine)
+    marked = np.zeros(fine.shape, np.int8)
+    zones.mark(marked, fine, CellWindow.whole(fine.shape))
     rows, columns = np.nonzero(marked)
     # The zone covers x from 0 to 1 and y from 1 to 2.
     assert sorted(set(rows.tolist())) == [2, 3]

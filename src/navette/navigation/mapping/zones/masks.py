@@ -39,4 +39,4 @@ class FilterMask:
 
         Base and multiplier do not count, as in Nav2's KeepoutFilter.
         """
-        return np.where(self.cells >= lethal_value, LETHAL, FREE).astype(np.int8)
+        return np.where(self.cells >= lethal_value, np.int8(LETHAL), np.int8(FREE))

@@ -9,6 +9,8 @@ import math
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from navette.errors import InvalidInputError, InvalidValueError, NavetteError
 from navette.geometry.map_files import read_occupancy_map
 from navette.geometry.messages import header
@@ -139,7 +141,7 @@ class ZonesNode(StageNode):
         height, width = read.cells.shape
         spec = GridSpec(read.resolution, width, height, read.origin)
         now_ns, frame = self._now_ns(), self.params.map_frame
-        self.publish(mask.name, grid_to_message(read.cells, spec, frame, now_ns))
+        self.hand_over(mask.name, grid_to_message(read.cells, spec, frame, now_ns))
         info.header = header(now_ns, frame)
         info.filter_mask_topic = self.resolve_topic_name(mask.name)
         self.publish(about.name, info)
@@ -172,8 +174,8 @@ class ZonesNode(StageNode):
         cells = mask.keep_out(self.params.lethal_value)
         frame = self.params.map_frame
         zones = grid_to_message(cells, mask.spec, frame, self._now_ns())
-        self.publish(topics.KEEPOUT_ZONES.name, zones)
-        self.get_logger().info(f"keep-out zones: {int((cells > 0).sum())} cells")
+        self.hand_over(topics.KEEPOUT_ZONES.name, zones)
+        self.get_logger().info(f"keep-out zones: {np.count_nonzero(cells)} cells")
 
     def _on_speed_mask(self, mask: FilterMask, info: CostmapFilterInfo) -> None:
         self._speeds, self._in_percent = mask, info.type == _PERCENT

@@ -34,16 +34,11 @@ class Reached(NamedTuple):
     def within(self, window: CellWindow) -> NDArray[np.int32]:
         """Return the steps to the cells of another window of the map."""
         found = np.full(window.shape, UNREACHED, np.int32)
-        top, bottom, left, right = self.window
-        both = CellWindow(
-            max(top, window.first_row),
-            min(bottom, window.last_row),
-            max(left, window.first_column),
-            min(right, window.last_column),
-        )
+        both = self.window.intersection(window)
         if not both.is_empty:
             here = both.shifted(-window.first_row, -window.first_column)
-            found[here.slices] = self.steps[both.shifted(-top, -left).slices]
+            mine = both.shifted(-self.window.first_row, -self.window.first_column)
+            found[here.slices] = self.steps[mine.slices]
         return found
 
 
