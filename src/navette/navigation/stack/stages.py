@@ -254,7 +254,7 @@ def missions() -> None:
     from navette.navigation.missions.node import MissionNode
     from navette.navigation.missions.sequence import REACHED
 
-    resolved = _resolve(given)
+    resolved = _resolve_robot(given)
     profile = _profile(resolved, "missions")
     if given.goal:
         goals = [value for goal in given.goal for value in goal]
@@ -337,7 +337,7 @@ def _announced_viewer(context: Context) -> Node:
 def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
     parser = _parser(name, text)
     _add_robot(parser)
-    resolved = _resolve(_parse(parser))
+    resolved = _resolve_robot(_parse(parser))
     _run(
         lambda context: node_class(context=context),
         _profile(resolved, name),
@@ -356,7 +356,7 @@ def _simulated(given: Any, localization: str) -> "SimParams":
     """Return the parameters of the simulated robot: its frames, and the source."""
     from navette.sim.params import SimParams
 
-    of_sim = _profile(_resolve(given), "sim").for_node("/sim")
+    of_sim = _profile(_resolve_robot(given), "sim").for_node("/sim")
     frames = {
         frame: of_sim[frame].value
         for frame in ("map_frame", "odom_frame", "base_frame")
@@ -495,13 +495,18 @@ def _parse(parser: argparse.ArgumentParser) -> Any:
     return parser.parse_args(runtime.remove_ros_args(sys.argv[1:]))
 
 
-def _resolve(given: Any) -> "ResolvedScene":
+def _resolve_robot(given: Any) -> "ResolvedScene":
+    """Return the robot; the world is read only if it has the robot."""
+    return _resolve(given, world="empty" if given.robot else given.world)
+
+
+def _resolve(given: Any, world: str | None = None) -> "ResolvedScene":
     from navette.navigation.stack.options import RunOptions
     from navette.navigation.stack.scene import resolve_scene
 
     return resolve_scene(
         RunOptions(
-            world=given.world,
+            world=given.world if world is None else world,
             robot=given.robot or None,
             sensors=tuple(filter(None, ",".join(given.sensor).split(","))),
         )
