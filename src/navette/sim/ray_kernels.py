@@ -117,6 +117,15 @@ def _half_box(kind, size):  # type: ignore[no-untyped-def]
     return size[0], size[0], size[0]
 
 
+@kernel(allocates=False, inline="never")
+def is_beyond(kind, size, position, origin, reach):  # type: ignore[no-untyped-def]
+    """Whether no point of a shape is within reach: a quick test of many far shapes."""
+    most = reach + size[0] + size[1] + size[2]
+    x, y = position[0] - origin[0], position[1] - origin[1]
+    z = position[2] - origin[2]
+    return kind != PLANE and x * x + y * y + z * z > most * most
+
+
 @kernel(inline="never")
 def _seen_from(  # type: ignore[no-untyped-def]
     origin, world_R_view, position, world_R_shape, view_R_shape, centre
@@ -164,6 +173,8 @@ def cast_fan(  # type: ignore[no-untyped-def]
     turn = 2.0 * math.pi / step
     m, c = np.empty((3, 3)), np.empty(3)
     for g in range(len(kind)):
+        if is_beyond(kind[g], size[g], position[g], origin, reach):
+            continue
         _seen_from(origin, world_R_fan, position[g], rotation[g], m, c)
         middle, half = _bearing(kind[g], size[g], m, c, reach)
         if half < 0.0:
@@ -309,7 +320,11 @@ def cast_image(  # type: ignore[no-untyped-def]
     depth[:] = far
     shape[:] = -1
     m, c = np.empty((3, 3)), np.empty(3)
+    # Along the rays through the corners of the image.
+    reach = far * math.hypot(1.0, math.hypot(width, height) / (2 * focal))
     for g in range(len(kind)):
+        if is_beyond(kind[g], size[g], position[g], origin, reach):
+            continue
         _seen_from(origin, world_R_camera, position[g], rotation[g], m, c)
         top, bottom, left, right = 0, height - 1, 0, width - 1
         if kind[g] != PLANE:

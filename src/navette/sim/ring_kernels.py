@@ -10,7 +10,14 @@ import math
 import numpy as np
 
 from navette.files.kernels import kernel
-from navette.sim.ray_kernels import PLANE, _eye, _half_box, _hit, _seen_from
+from navette.sim.ray_kernels import (
+    PLANE,
+    _eye,
+    _half_box,
+    _hit,
+    _seen_from,
+    is_beyond,
+)
 from navette.sim.shading import _normal
 
 
@@ -40,6 +47,8 @@ def cast_rings(  # type: ignore[no-untyped-def]
     m, c = np.empty((3, 3)), np.empty(3)
     cos_a, sin_a = np.cos(azimuths), np.sin(azimuths)
     for g in range(len(kind)):
+        if is_beyond(kind[g], size[g], position[g], origin, reach):
+            continue
         _seen_from(origin, world_R_fan, position[g], rotation[g], m, c)
         middle, half, lowest, highest = _directions(kind[g], size[g], m, c, reach)
         if half < 0.0:

@@ -175,6 +175,40 @@ def test_images_equal_mujocos(seed: int) -> None:
     assert np.mean(shape.ravel() == rows) > 0.999
 
 
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("reach", [2.0, 5.0])
+def test_a_short_reach_changes_nothing_within_it(seed: int, reach: float) -> None:
+    """Shapes that are further away are not tested at all."""
+    simulator = Simulator(_random_scene(seed))
+    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    pose = _tilted(np.random.default_rng(seed)).world(data)
+    table = shapes.kind, shapes.size, shapes.position, shapes.rotation
+    angles = np.linspace(-2.0, 2.0, 181)
+    beams = np.stack([np.cos(angles), np.sin(angles)])
+
+    def fan(reach: float) -> np.ndarray:
+        distance = np.empty(len(angles))
+        cast_fan(*table, *pose, angles, beams, reach, distance)
+        return distance
+
+    def rings(reach: float) -> np.ndarray:
+        elevations = np.linspace(-1.5, 1.5, 15)
+        return shapes.cast_rings(model, data, pose, angles, elevations, reach)[0]
+
+    def image(reach: float) -> np.ndarray:
+        depth, shape = np.empty((36, 48)), np.empty((36, 48), np.int32)
+        cast_image(*table, *pose, 24.0, 0.0, reach, depth, shape)
+        return depth
+
+    for cast in (fan, rings, image):
+        near, all_of_it = cast(reach), cast(1e6)
+        np.testing.assert_array_equal(near[near < reach], all_of_it[all_of_it < reach])
+        assert (near[all_of_it >= reach] >= reach).all()
+
+
 MESH_WORLD = """<mujoco><asset><mesh name='tetra'
  vertex='0 0 0  2 0 0  0 2 0  0 0 2'/></asset><worldbody>
  <geom type='plane' size='0 0 1'/><geom type='mesh' mesh='tetra' pos='2 -1 0'
