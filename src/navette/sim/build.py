@@ -95,6 +95,8 @@ def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
     for model in scene.models:
         builder.add_model(model, is_robot=model is robot)
     add_servos(spec, robot, carrier_of(robot, drive_wheels(robot)[0].link))
+    if scene.mjcf is None and any(map(_is_loose, scene.models)):
+        _let_obstacles_sleep(spec, robot)
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -113,6 +115,21 @@ def _empty_spec(scene: Scene, timestep_s: float) -> mujoco.MjSpec:
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     return spec
+
+
+def _is_loose(model: Model) -> bool:
+    return not model.static and model.motion is None and model.drive is None
+
+
+def _let_obstacles_sleep(spec: mujoco.MjSpec, robot: Model) -> None:
+    """Leave loose obstacles out of the physics while they rest; a touch wakes them.
+
+    The robot stays awake: its servos hold it, and it would lose their small motions.
+    """
+    spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    for body in spec.worldbody.bodies:
+        if body.name.startswith(f"{robot.name}/"):
+            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
 
 
 def _mjcf_spec(path: Path) -> mujoco.MjSpec:

@@ -1,6 +1,7 @@
 """Models that follow a script: trajectories, SDF actors, physics, sensors, drawing."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -239,3 +240,41 @@ def test_actors_are_drawn_at_their_poses() -> None:
     assert marker.pose.position.x == pytest.approx(4.5)
     assert (marker.type, marker.scale.x) == (marker.CYLINDER, 0.5)
     assert marker.header.frame_id == "map"
+
+
+def test_obstacles_at_rest_sleep_until_the_robot_or_an_actor_touches_them(
+    tmp_path: Path,
+) -> None:
+    """Without sleep each of them would be simulated all the time."""
+    geometry = "<geometry><box><size>0.5 0.5 0.6</size></box></geometry>"
+
+    def crate(name: str, x: float, y: float, z: float = 0.3) -> str:
+        return (
+            f"<model name='{name}'><pose>{x} {y} {z} 0 0 0</pose><link name='l'>"
+            f"<inertial><mass>3</mass></inertial><collision name='c'>{geometry}"
+            f"</collision><visual name='v'>{geometry}</visual></link></model>"
+        )
+
+    scripted = World().add_actor([(0, -3, 3), (4, -3, 3), (8, 1, 3)], loop=False)
+    crates = crate("ahead", 2, 0), crate("aside", -1, 3), crate("alone", 0, -3)
+    lifted = crate("falls", 0, -6, 0.5)
+    loose = _read(tmp_path, "".join(crates) + lifted)
+    scene = replace(loose, models=(*loose.models, *scripted.scene().models))
+    params = SimParams(command_timeout_s=0.0, max_speed_mps=0.5)
+    robot = load_robot("jackal").model
+    simulator = Simulator(scene.with_robot(robot), params, start=Pose2(0, 0, 0))
+    data = simulator._data
+
+    def at(name: str) -> np.ndarray:
+        return np.array(data.body(f"{name}/l").xpos)
+
+    before = {name: at(name) for name in ("ahead", "aside", "alone")}
+    simulator.advance_to(4_000_000_000)
+    assert at("falls")[2] == pytest.approx(0.3, abs=0.01)
+    assert data.ntree_awake == 1  # the robot
+    simulator.command(0.5, 0.0)
+    simulator.advance_to(9_000_000_000)
+    assert at("ahead")[0] > before["ahead"][0] + 0.8  # pushed by the robot
+    assert at("aside")[0] > before["aside"][0] + 2.0  # and by the actor
+    np.testing.assert_allclose(at("alone"), before["alone"], atol=1e-3)
+    assert simulator.contacts.count >= 1
