@@ -132,8 +132,9 @@ def cloud_points(msg: PointCloud2) -> Points:
         part = np.ascontiguousarray(data[:, field.offset : end])
         with np.errstate(invalid="ignore"):  # a signalling NaN
             points[:, column] = part.view(kind)[:, 0]
-    near: Points = points[(np.abs(points) <= _FARTHEST_M).all(axis=1)]
-    return near
+    x, y, z = np.abs(points).T
+    near = (x <= _FARTHEST_M) & (y <= _FARTHEST_M) & (z <= _FARTHEST_M)
+    return points if near.all() else points[near]
 
 
 def of_range(msg: Range) -> Cone | None:

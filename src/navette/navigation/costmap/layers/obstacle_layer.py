@@ -60,11 +60,14 @@ class ObstacleLayer:
         """Clear and mark by an observation, in the odometry's frame."""
         self._move_to(odom_T_base)
         origin, hits = observation.origin, observation.hits
-        distance = np.linalg.norm(hits - origin, axis=1)
         if source.clearing:
-            self._clear(origin, np.concatenate([hits, observation.misses]), source)
+            misses = observation.misses
+            ends = np.concatenate([hits, misses]) if len(misses) else hits
+            self._clear(origin, ends, source)
         if not source.marking:
             return
+        rays = hits - origin
+        distance = np.sqrt(np.einsum("ij,ij->i", rays, rays))
         near = distance <= source.obstacle_max_range
         near &= distance >= source.obstacle_min_range
         height = hits[:, 2]
@@ -106,7 +109,10 @@ class ObstacleLayer:
         footprint = self._footprint
         if footprint is None or not self.params.footprint_clearing_enabled:
             return found
-        inside = footprint.contains(odom_T_base.inverse().apply(found))
+        inside = np.hypot(*(found - (odom_T_base.x, odom_T_base.y)).T)
+        inside = inside <= footprint.circumscribed_radius
+        on_base = odom_T_base.inverse().apply(found[inside])
+        inside[inside] = footprint.contains(on_base)
         self._voxels.clear_region(found[inside])
         kept: Points = found[~inside]
         return kept
@@ -116,24 +122,15 @@ class ObstacleLayer:
         self._cells.move_to(odom_T_base.x, odom_T_base.y)
 
     def _clear(self, origin: Points, ends: Points, source: SourceParams) -> None:
-        rays = ends - origin
-        length = np.linalg.norm(rays, axis=1)
-        used = length > max(source.raytrace_min_range, 1e-6)
-        rays, length = rays[used], length[used]
-        reach = np.minimum(length, source.raytrace_max_range)
-        unit = rays / length[:, None]
         resolution = self.params.resolution_m
-        least = _LEAST_CHORD * min(resolution, self.params.z_resolution)
-        # Rays that are cut off end in free space; the others stop before the hit.
-        ends = (
-            origin
-            + unit
-            * np.where(length > source.raytrace_max_range, reach + resolution, reach)[
-                :, None
-            ]
+        self._voxels.clear(
+            origin,
+            ends,
+            longer_than=max(source.raytrace_min_range, 1e-6),
+            farthest=source.raytrace_max_range,
+            margin=resolution,
+            least_chord=_LEAST_CHORD * min(resolution, self.params.z_resolution),
         )
-        ends = _one_in_each_cell(ends, self.params)
-        self._voxels.clear(origin, ends, margin=resolution, least_chord=least)
 
     def _mark_drops(
         self,
@@ -147,9 +144,12 @@ class ObstacleLayer:
         crossing, _ = floor_crossings(origin, hits[below])
         away = np.linalg.norm(crossing - origin[:2], axis=1)
         crossing = crossing[away <= source.obstacle_max_range]
-        near = distance <= source.raytrace_max_range
-        level = np.abs(hits[:, 2]) <= source.max_drop_height
-        self._voxels.mark_drops(crossing, hits[near & level, :2])
+        floor = np.empty((0, 2))
+        if self._voxels.has_drops:
+            near = distance <= source.raytrace_max_range
+            level = np.abs(hits[:, 2]) <= source.max_drop_height
+            floor = hits[near & level, :2]
+        self._voxels.mark_drops(crossing, floor)
 
 
 def floor_crossings(origin: Points, ends: Points) -> tuple[Points, NDArray[np.float64]]:
@@ -167,20 +167,6 @@ def floor_crossings(origin: Points, ends: Points) -> tuple[Points, NDArray[np.fl
     share = origin[2] / (origin[2] - ends[:, 2])
     places: Points = origin[:2] + share[:, None] * (ends[:, :2] - origin[:2])
     return places, share
-
-
-def _one_in_each_cell(points: Points, params: ObstacleLayerParams) -> Points:
-    """Return one of the points (N, 3) in each voxel, the first.
-
-    Rays to one voxel clear nearly the same: a depth camera has dozens to a near one.
-    """
-    sizes = (params.resolution_m, params.resolution_m, params.z_resolution)
-    index = np.floor(points / sizes).astype(np.int64)
-    # Within ±2²⁰ voxels, which is far beyond every window; others may coincide.
-    key = ((index[:, 0] << 42) ^ (index[:, 1] << 21)) ^ index[:, 2]
-    _, first = np.unique(key, return_index=True)
-    kept: Points = points[np.sort(first)]
-    return kept
 
 
 def _same(a: Points, b: Points) -> bool:
