@@ -70,7 +70,7 @@ class RangeWindow:
         self._is_used = True
         x, y, yaw = sensor
         reach = reading + 2.0 * self.resolution
-        rows, columns, centres = self._around(x, y, reach)
+        rows, columns, centres = self._around(_corners(sensor, reach, half_angle))
         dx, dy = centres[:, 0] - x, centres[:, 1] - y
         distance = np.hypot(dx, dy)
         bearing = np.abs(np.angle(np.exp(1j * (np.arctan2(dy, dx) - yaw))))
@@ -92,12 +92,12 @@ class RangeWindow:
         return self._centres(rows, columns)
 
     def _around(
-        self, x: float, y: float, reach: float
+        self, points: Points
     ) -> tuple[NDArray[np.int64], NDArray[np.int64], Points]:
-        """Return rows, columns and centres of the cells within a square."""
+        """Return rows, columns and centres of the cells around points (N, 2)."""
         assert self._corner is not None, "called after move_to()"
-        low = np.floor((np.array([x, y]) - reach) / self.resolution) - self._corner
-        high = np.floor((np.array([x, y]) + reach) / self.resolution) - self._corner
+        low = np.floor(points.min(axis=0) / self.resolution) - self._corner
+        high = np.floor(points.max(axis=0) / self.resolution) - self._corner
         first = np.clip(low, 0, self._count).astype(np.int64)
         last = np.clip(high + 1, 0, self._count).astype(np.int64)
         grid = np.meshgrid(
@@ -111,6 +111,18 @@ class RangeWindow:
         index = np.stack([columns, rows], axis=1) + np.array(self._corner)
         centres: Points = (index + 0.5) * self.resolution
         return centres
+
+
+def _corners(
+    sensor: tuple[float, float, float], reach: float, half_angle: float
+) -> Points:
+    """Return points (N, 2) around a cone; see :meth:`RangeWindow.update`."""
+    x, y, yaw = sensor
+    half, count = min(half_angle, math.pi), 16
+    angles = yaw + np.linspace(-half, half, count + 1)
+    outer = reach / math.cos(half / count)  # of the polygon around the arc
+    arc = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return np.concatenate([[(x, y)], (x, y) + outer * arc])
 
 
 def sensor_model(
