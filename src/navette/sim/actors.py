@@ -2,6 +2,7 @@
 """Models that follow a script: their poses in the physics."""
 
 import mujoco
+import numpy as np
 
 from navette.geometry import Transform3, quaternion_from_yaw
 from navette.sim.build import Compiled
@@ -19,6 +20,7 @@ class Actors:
             for model in compiled.scene.models
             if model.motion is not None
         ]
+        self._indices = np.array([index for _, _, index in self._motions], np.int64)
         self._fastest_mps = max(
             (motion.fastest_mps() for _, motion, _ in self._motions), default=0.0
         )
@@ -33,11 +35,15 @@ class Actors:
 
     def place(self, data: mujoco.MjData, now_ns: int) -> None:
         """Set all poses for a time."""
-        for _, motion, index in self._motions:
-            pose = motion.at(now_ns / 1e9)
-            data.mocap_pos[index] = pose[:3]
-            x, y, z, w = quaternion_from_yaw(pose.yaw)
-            data.mocap_quat[index] = (w, x, y, z)
+        if not self._motions:
+            return
+        poses = [motion.at(now_ns / 1e9) for _, motion, _ in self._motions]
+        values = np.array(poses)
+        data.mocap_pos[self._indices] = values[:, :3]
+        half = values[:, 3] / 2
+        data.mocap_quat[self._indices] = 0.0
+        data.mocap_quat[self._indices, 0] = np.cos(half)
+        data.mocap_quat[self._indices, 3] = np.sin(half)
 
     def jump_within(self, now_ns: int, span_ns: int) -> bool:
         """Return whether a script starts again, elsewhere, within a span of time."""

@@ -5,6 +5,7 @@ import bisect
 import itertools
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from navette.errors import InvalidValueError
@@ -77,7 +78,7 @@ class Trajectory:
         """Time of the last waypoint, without the delay."""
         return self.waypoints[-1].time_s
 
-    @property
+    @cached_property
     def cycle_s(self) -> float:
         """Time after which a looped script starts again; infinite for one waypoint."""
         cycle_s = self.delay_s + self.duration_s
@@ -116,7 +117,7 @@ class Trajectory:
         return fastest
 
     def _at_script(self, time_s: float) -> ScriptedPose:
-        i = bisect.bisect_right(self.waypoints, time_s, key=lambda w: w.time_s) - 1
+        i = bisect.bisect_right(self._times, time_s) - 1
         if i >= len(self.waypoints) - 1:
             return ScriptedPose(*self.waypoints[-1][1:])
         a, b = self.waypoints[i], self.waypoints[i + 1]
@@ -124,8 +125,8 @@ class Trajectory:
         u = (time_s - a.time_s) / span
         yaw = a.yaw + u * angle_difference(b.yaw, a.yaw)
         if self.tension is None:
-            x, y, z = (p + u * (q - p) for p, q in zip(a[1:4], b[1:4], strict=True))
-            return ScriptedPose(x, y, z, yaw)
+            x, y = a.x + u * (b.x - a.x), a.y + u * (b.y - a.y)
+            return ScriptedPose(x, y, a.z + u * (b.z - a.z), yaw)
         # Cubic Hermite spline.
         h01 = u * u * (3 - 2 * u)
         h10, h11 = u * (1 - u) ** 2 * span, u * u * (u - 1) * span
@@ -136,6 +137,10 @@ class Trajectory:
             )
         )
         return ScriptedPose(x, y, z, yaw)
+
+    @cached_property
+    def _times(self) -> tuple[float, ...]:
+        return tuple(waypoint.time_s for waypoint in self.waypoints)
 
     def _velocity(self, i: int) -> tuple[float, float, float]:
         """Return the spline's velocity (m/s) at a waypoint: between its neighbours."""
