@@ -151,6 +151,8 @@ class ExplorerNode(MapReaderNode):
 
     def on_new_map(self, part: MapPart | None) -> None:
         """Choose the next goal if there is none or its frontier has been seen."""
+        if self.done:
+            return
         if part is None:
             self._changes.clear()
         self._changes.append(self._whole_map if part is None else part)
