@@ -95,7 +95,7 @@ def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
     for model in scene.models:
         builder.add_model(model, is_robot=model is robot)
     add_servos(spec, robot, carrier_of(robot, drive_wheels(robot)[0].link))
-    if scene.mjcf is None and any(map(_is_loose, scene.models)):
+    if scene.mjcf is None:
         _let_obstacles_sleep(spec, robot)
     try:
         compiled = spec.compile()
@@ -117,14 +117,12 @@ def _empty_spec(scene: Scene, timestep_s: float) -> mujoco.MjSpec:
     return spec
 
 
-def _is_loose(model: Model) -> bool:
-    return not model.static and model.motion is None and model.drive is None
-
-
 def _let_obstacles_sleep(spec: mujoco.MjSpec, robot: Model) -> None:
-    """Leave loose obstacles out of the physics while they rest; a touch wakes them.
+    """Leave obstacles out of the physics while they rest; a touch wakes loose ones.
 
-    The robot stays awake: its servos hold it, and it would lose their small motions.
+    The poses of static ones are then computed once, not in each step: a third of the
+    time among 6,000 posts. The robot stays awake: its servos hold it, and it would lose
+    their small motions.
     """
     spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     for body in spec.worldbody.bodies:
