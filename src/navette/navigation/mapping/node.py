@@ -143,6 +143,7 @@ class MapMemoryNode(StageNode):
     def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._has_nav2_reader = False
+        self._is_starting = True
         self._map_ns = -1  # stamp of the newest map
         self._tracker = self._new_tracker()
         trajectory = self.resolve_topic_name(topics.TRAJECTORY.name)
@@ -157,6 +158,8 @@ class MapMemoryNode(StageNode):
         self._costmap_services = CostmapServices(self, "global_costmap", source=self)
         if self.params.map_file:
             self._load_file()
+        # Who has subscribed so far depends on chance, and a lock-step is repeatable.
+        self._served, self._is_starting = 0, False
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; place the costmaps that waited for it."""
@@ -412,7 +415,7 @@ class MapMemoryNode(StageNode):
         Until then the network need not keep a second copy of the map. From then on
         each map is published, so that a late subscriber gets the newest.
         """
-        if not self._has_nav2_reader:
+        if not self._has_nav2_reader and not self._is_starting:
             self._has_nav2_reader = self.has_listeners(topics.GLOBAL_COSTMAP.name)
         return self._has_nav2_reader
 
