@@ -118,12 +118,15 @@ def _half_box(kind, size):  # type: ignore[no-untyped-def]
 
 
 @kernel(allocates=False, inline="never")
-def is_beyond(kind, size, position, origin, reach):  # type: ignore[no-untyped-def]
+def is_beyond(  # type: ignore[no-untyped-def]
+    kind, size, position, origin, reach
+) -> bool:
     """Whether no point of a shape is within reach: a quick test of many far shapes."""
     most = reach + size[0] + size[1] + size[2]
     x, y = position[0] - origin[0], position[1] - origin[1]
     z = position[2] - origin[2]
-    return kind != PLANE and x * x + y * y + z * z > most * most
+    beyond: bool = kind != PLANE and x * x + y * y + z * z > most * most
+    return beyond
 
 
 @kernel(inline="never")

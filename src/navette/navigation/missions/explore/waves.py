@@ -170,7 +170,7 @@ def _visit(
     crossed: int,
     queue: Any,
     end: int,
-) -> Any:
+) -> int:
     """Append the neighbours of a cell that were not reached to the queue."""
     row, column = cell
     down, right = (-1, 1, 0, 0, -1, -1, 1, 1), (0, 0, -1, 1, -1, 1, -1, 1)
@@ -188,7 +188,7 @@ def _visit(
 
 
 @kernel(allocates=False)
-def _label(cells: Any, parents: Any, labels: Any) -> Any:
+def _label(cells: Any, parents: Any, labels: Any) -> int:
     """Write the number of its connected set for each cell; return their count.
 
     The sets are numbered in the order of their first cells.
@@ -227,7 +227,7 @@ def _join(parents: Any, a: int, b: int) -> None:
 
 
 @kernel(allocates=False)
-def _first(parents: Any, i: int) -> Any:
+def _first(parents: Any, i: int) -> int:
     while parents[i] != i:
         parents[i] = parents[parents[i]]
         i = parents[i]
