@@ -68,6 +68,16 @@ def _tilted(rng: np.random.Generator) -> Mount:
     return Mount(0, pose)  # body 0 is the world
 
 
+def _shapes(seed: int) -> tuple[Any, Any, ShapeTable]:
+    """Return model, data and shapes of a random scene."""
+    model = Simulator(_random_scene(seed)).compiled.model
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    return model, data, shapes
+
+
 def _check_fan(
     model: Any, data: Any, mount: Mount, angles: np.ndarray, limit_m: float
 ) -> None:
@@ -134,11 +144,7 @@ def test_fans_between_walls_equal_mujocos(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(6))
 @SPANS
 def test_rings_equal_mujocos(seed: int, first: float, last: float) -> None:
-    simulator = Simulator(_random_scene(seed))
-    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
-    mujoco.mj_kinematics(model, data)
-    shapes = ShapeTable(model, (0, 1))
-    shapes.update(data)
+    model, data, shapes = _shapes(seed)
     pose = _tilted(np.random.default_rng(seed)).world(data)
     azimuths = np.linspace(first, last, 91)
     elevations = np.linspace(-1.5, 1.5, 15)
@@ -153,11 +159,7 @@ def test_rings_equal_mujocos(seed: int, first: float, last: float) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_images_equal_mujocos(seed: int) -> None:
-    simulator = Simulator(_random_scene(seed))
-    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
-    mujoco.mj_kinematics(model, data)
-    shapes = ShapeTable(model, (0, 1))
-    shapes.update(data)
+    model, data, shapes = _shapes(seed)
     origin, rotation = _tilted(np.random.default_rng(seed + 50)).world(data)
     sensor = CameraSensor(name="c", width=48, height=36)
     depth, shape = np.empty((36, 48)), np.empty((36, 48), dtype=np.int32)
@@ -179,11 +181,7 @@ def test_images_equal_mujocos(seed: int) -> None:
 @pytest.mark.parametrize("reach", [2.0, 5.0])
 def test_a_short_reach_changes_nothing_within_it(seed: int, reach: float) -> None:
     """Shapes that are further away are not tested at all."""
-    simulator = Simulator(_random_scene(seed))
-    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
-    mujoco.mj_kinematics(model, data)
-    shapes = ShapeTable(model, (0, 1))
-    shapes.update(data)
+    model, data, shapes = _shapes(seed)
     pose = _tilted(np.random.default_rng(seed)).world(data)
     table = shapes.kind, shapes.size, shapes.position, shapes.rotation
     angles = np.linspace(-2.0, 2.0, 181)

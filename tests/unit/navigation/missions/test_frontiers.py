@@ -208,3 +208,15 @@ def test_unknown_cells_around_the_map_change_nothing() -> None:
     found = explore(cells, spec, (1.25, 1.25), PARAMS)
     assert found.count == 2
     assert explore(larger, larger_spec, (1.25, 1.25), PARAMS) == found
+
+
+def test_a_goal_lies_before_the_middle_of_its_frontier_not_at_its_near_end() -> None:
+    cells = np.full((40, 80), -1, np.int8)
+    cells[:30, :] = 100
+    cells[1:29, 1:79] = 0
+    cells[29, 30:68] = 0  # an opening of 3.8 m
+    spec = GridSpec(0.1, 80, 40, Pose2(0.0, 0.0, 0.0))
+    params = FrontierParams(clearance_m=0.3, viewpoint_m=0.6, passage_m=0.2)
+    best = explore(cells, spec, (0.75, 0.75), params).best
+    assert best is not None
+    assert abs(best.goal[0] - best.middle[0]) < 0.3

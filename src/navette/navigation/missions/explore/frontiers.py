@@ -33,7 +33,7 @@ from navette.navigation.missions.explore.waves import (
 
 _WALL_M = 0.1
 """Cells as near to an obstacle belong to it: thickness and noise of walls."""
-_FIRST_STEPS = 200  # each further search goes twice as far
+_FIRST_STEPS = 400  # each further search goes twice as far
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class FrontierSearch:
         order = np.argsort(least, kind="stable").tolist()
         while pieces:
             reached = steps_from((row, column), self._map.kinds, limit)
-            settled = UNREACHED if reached.is_all else limit - 2 * self._reach
+            settled = UNREACHED if reached.is_all else limit - self._detour
             best = None
             for k in order:
                 if best is not None and self._score(best) < least[k] * resolution:
@@ -218,6 +218,12 @@ class FrontierSearch:
     def _reach(self) -> int:
         """Largest number of steps between a frontier and its goal."""
         return round(self._params.viewpoint_m / self._spec.resolution)
+
+    @property
+    def _detour(self) -> int:
+        """Steps by which the path to a goal of a frontier may be the longer one."""
+        longest = round(self._params.max_length_m / self._spec.resolution)
+        return 2 * (self._reach + longest)
 
     def _score(self, frontier: Frontier) -> float:
         """Return the path (m) less what the frontier is worth; the least is best."""
@@ -251,7 +257,7 @@ class FrontierSearch:
         first = int(steps[is_candidate].min())
         if first > settled:
             return None
-        candidates = np.argwhere(is_candidate & (steps <= first + 2 * self._reach))
+        candidates = np.argwhere(is_candidate & (steps <= first + self._detour))
         away = off.steps[candidates[:, 0], candidates[:, 1]]
         candidates += (off.window.first_row, off.window.first_column)
         mean = piece.mean(axis=0)
