@@ -19,7 +19,15 @@ class NavigatorStatus:
         self._logged = self._fault = ""
 
     def report(self, report: NavigatorReport, *, is_logged: bool = False) -> None:
-        """Publish the status; log it if it has changed and was not logged already."""
+        """Log the status if it has changed and was not logged already; publish it.
+
+        Logged first, because nodes that end with the goal may end the program.
+        """
+        text = f"{report.message} {report.plan}"
+        if text != self._logged:
+            self._logged = text
+            if not is_logged:
+                self._log(report)
         self._reporter.report(
             report.message,
             _level(report),
@@ -34,11 +42,6 @@ class NavigatorStatus:
             margin_m=report.margin_m,
             replans=report.replans,
         )
-        text = f"{report.message} {report.plan}"
-        if text != self._logged:
-            self._logged = text
-            if not is_logged:
-                self._log(report)
 
     def _log(self, report: NavigatorReport) -> None:
         logger = self._logger
