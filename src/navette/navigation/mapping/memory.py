@@ -127,8 +127,11 @@ class MapMemory:
         return other
 
     def load(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
-        """Replace the map by (H, W) and its geometry, also for :meth:`reset`."""
-        self._loaded = cells.copy(), spec
+        """Replace the map by (H, W) and its geometry, also for :meth:`reset`.
+
+        Do not write to ``cells`` afterwards: they are not copied.
+        """
+        self._loaded = cells, spec
         self.reset()
 
     def clear(self, region: SquareRegion | None = None) -> None:

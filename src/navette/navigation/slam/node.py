@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.navigation.slam.graph_file import read_graph
 from navette.navigation.slam.messages import planar_scan
 from navette.navigation.slam.params import MAPPING, SlamParams
-from navette.navigation.slam.rendering import MapRenderer
+from navette.navigation.slam.rendering import MapRenderer, MapScan
 from navette.navigation.slam.scan_graph import ScanGraph
 from navette.navigation.slam.servers.map_services import SlamMapServices
 from navette.navigation.slam.slam import Slam, SlamEstimate
@@ -38,14 +38,29 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import pose_message, pose_of
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.tf.exceptions import TransformException
+from navette.runtime.worker import Worker
+
+T = TypeVar("T")
 
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
-# Scans that wait for their odometry; more are older than any wait.
+# Scans that wait for their odometry, or until the whole map is searched; older ones
+# are left out.
 _WAITING = 16
 # Of the period between two matched scans, so that jitter of the scanner skips none.
 _EARLY = 0.8
 # States on the topic of the localization's status; navigation stops unless localized.
 _WAITING_FOR_SCANS, _LOCALIZED, _LOST = "localizing", "localized", "lost"
+
+
+class _Found(NamedTuple):
+    """Where the robot is by a scan, and the map then."""
+
+    estimate: SlamEstimate
+    unmatched_in_a_row: int
+    key_scans: int
+    loop_closures: int
+    #: Stamp (ns) and pose of each key scan, if earlier poses changed.
+    trajectory: list[tuple[int, Pose2]]
 
 
 class SlamNode(StageNode):
@@ -91,12 +106,20 @@ class SlamNode(StageNode):
 
     def __init__(self, node_name: str = "slam", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
+        # All that uses the SLAM is computed there, in order: a robot that is lost is
+        # searched for in the whole map. A map being drawn must not delay it.
+        self._matcher = Worker(self)
         # Programs of Nav2 wait for the node that locates the robot.
         self._lifecycle = StageLifecycle(self, "amcl")
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self.restart()
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
         self._services = SlamMapServices(self, session=self)
+
+    def destroy_node(self) -> None:
+        """End the search, then destroy the node."""
+        self._matcher.close()
+        super().destroy_node()
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
         """Place the robot in the known map."""
@@ -110,7 +133,8 @@ class SlamNode(StageNode):
             self.get_logger().warning(
                 "initial pose ignored: this map began where the robot was put down"
             )
-        self._slam.place(pose_of(msg.pose.pose))
+        pose = pose_of(msg.pose.pose)
+        self._use(lambda slam: slam.place(pose))
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the pose; use the scans that waited for it."""
@@ -130,7 +154,7 @@ class SlamNode(StageNode):
 
     def on_params_changed(self, old: SlamParams) -> None:
         """Use the new values from the next scan on; the map is kept."""
-        self._slam.params = self.params
+        self._use(partial(_set_params, params=self.params))
         if self.params.map_period_s != old.map_period_s:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
@@ -172,20 +196,31 @@ class SlamNode(StageNode):
         )
         self._set_slam(slam)
 
-    def empty_map(self) -> None:
+    async def empty_map(self) -> None:
         """Begin a new map where the robot is."""
-        self._set_slam(self._slam.emptied())
+        slam: Any = await self._matcher.submit(self._slam.emptied)
+        self._set_slam(slam)
 
-    @property
-    def scan_graph(self) -> ScanGraph:
-        """The present scans and poses."""
-        return self._slam.graph
+    async def copied_graph(self) -> ScanGraph:
+        """Return a copy of the present scans and poses."""
+        graph = await self._matcher.submit(self._slam.graph.copy)
+        assert graph is not None, "copies are graphs"
+        return graph
 
     def _set_slam(self, slam: Slam) -> None:
         self._slam = slam
         self._renderer = MapRenderer(self.params)
-        self._map_keys = 0
+        self.key_scans, self._drawn_keys = len(slam.graph), 0
         self._status.report(_WAITING_FOR_SCANS, StatusReporter.WARN)
+
+    def _use(
+        self, change: Callable[[Slam], T], finish: Callable[[T], None] = lambda _: None
+    ) -> None:
+        """Use the present SLAM after what is to be done with it already."""
+        slam = self._slam
+        self._matcher.run(
+            partial(change, slam), finish, is_dropped=lambda: self._slam is not slam
+        )
 
     def pause(self, is_paused: bool) -> None:
         """Leave scans out, or use them again; the odometry continues the pose."""
@@ -196,7 +231,7 @@ class SlamNode(StageNode):
 
     def _use_waiting(self) -> None:
         wait_ns = round(self.params.pose_wait_s * 1e9)
-        while self._waiting:
+        while self._waiting and not self._matcher.is_busy:
             stamp_ns, msg = self._waiting[0]
             pose = self._tracker.pose_at(stamp_ns)
             known_ns = self._tracker.stamp_ns
@@ -205,36 +240,46 @@ class SlamNode(StageNode):
                 return
             self._waiting.popleft()
             try:
-                self._use(stamp_ns, msg, pose)
+                self._use_scan(stamp_ns, msg, pose)
             except InvalidInputError as error:
                 self.drop_input(topics.LIDAR.name, error)
 
-    def _use(self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None) -> None:
-        if self.is_paused:
-            estimate = self._slam.predicted(odom_T_base)
-        else:
-            estimate = self._added(stamp_ns, msg, odom_T_base)
-        if estimate is None:
-            return
-        self._newest_ns = stamp_ns
-        self._report(estimate)
-        self._publish_pose(stamp_ns, estimate)
-        if estimate.is_corrected:
-            self._publish_trajectory()
-        if odom_T_base is not None:
-            self._publish_transform(
-                stamp_ns, estimate.map_T_base @ odom_T_base.inverse()
-            )
-
-    def _added(
+    def _use_scan(
         self, stamp_ns: int, msg: LaserScan, odom_T_base: Pose2 | None
-    ) -> SlamEstimate:
+    ) -> None:
+        if self.is_paused:
+            self._use(
+                lambda slam: _found(slam, slam.predicted(odom_T_base)),
+                partial(self._publish_found, stamp_ns, odom_T_base),
+            )
+            return
         scan, base_T_sensor = planar_scan(
             msg,
             self._base_T_sensor(msg.header.frame_id),
             upward_of(self._attitude.at(stamp_ns)),
         )
-        return self._slam.add(stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor)
+        self._use(
+            lambda slam: _found(
+                slam,
+                slam.add(stamp_ns, scan, odom_T_base, base_T_sensor=base_T_sensor),
+            ),
+            partial(self._publish_found, stamp_ns, odom_T_base),
+        )
+
+    def _publish_found(
+        self, stamp_ns: int, odom_T_base: Pose2 | None, found: _Found | None
+    ) -> None:
+        if found is not None:
+            self._newest_ns, self.key_scans = stamp_ns, found.key_scans
+            self._report(found)
+            self._publish_pose(stamp_ns, found.estimate)
+            if found.trajectory:
+                self._publish_trajectory(found.trajectory)
+            if odom_T_base is not None:
+                self._publish_transform(
+                    stamp_ns, found.estimate.map_T_base @ odom_T_base.inverse()
+                )
+        self._use_waiting()
 
     def _base_T_sensor(self, frame_id: str) -> Transform3:  # noqa: N802 - frame notation
         base = self.params.base_frame
@@ -245,9 +290,9 @@ class SlamNode(StageNode):
         except TransformException as error:
             raise InvalidInputError("no_transform", str(error)) from None
 
-    def _report(self, estimate: SlamEstimate) -> None:
+    def _report(self, found: _Found) -> None:
         """Report whether the scans agree with the map; log when that changes."""
-        row, before = self._slam.unmatched_in_a_row, self._status.state
+        row, before = found.unmatched_in_a_row, self._status.state
         state = before
         if row >= self.params.lost_scans:
             state = _LOST
@@ -261,13 +306,13 @@ class SlamNode(StageNode):
         elif state == _LOCALIZED and before == _LOST:
             self.get_logger().info("localized again")
         level = StatusReporter.OK if state == _LOCALIZED else StatusReporter.ERROR
-        spread = float(np.sqrt(np.trace(estimate.covariance[:2, :2])))
+        spread = float(np.sqrt(np.trace(found.estimate.covariance[:2, :2])))
         self._status.report(
             state,
             level,
             position_stddev_m=spread,
-            key_scans=len(self._slam.graph),
-            loop_closures=self._slam.loop_closures,
+            key_scans=found.key_scans,
+            loop_closures=found.loop_closures,
         )
 
     def _publish_pose(self, stamp_ns: int, estimate: SlamEstimate) -> None:
@@ -281,15 +326,13 @@ class SlamNode(StageNode):
         self.publish(topics.SLAM_POSE.name, message)
         self.publish(topics.AMCL_POSE.name, message)
 
-    def _publish_trajectory(self) -> None:
+    def _publish_trajectory(self, trajectory: list[tuple[int, Pose2]]) -> None:
         """Publish where the robot was at the key scans, by the present map."""
-        graph, frame = self._slam.graph, self.params.map_frame
+        frame = self.params.map_frame
         path = PathMsg(header=header(self._newest_ns, frame))
         path.poses = [
-            PoseStamped(
-                header=header(key.stamp_ns, frame), pose=pose_message(graph.pose(node))
-            )
-            for node, key in enumerate(graph.keys)
+            PoseStamped(header=header(stamp_ns, frame), pose=pose_message(pose))
+            for stamp_ns, pose in trajectory
         ]
         self.publish(topics.TRAJECTORY.name, path)
 
@@ -306,18 +349,43 @@ class SlamNode(StageNode):
 
     def _publish_map(self) -> None:
         """Publish the map if it has grown and a program subscribes to it."""
-        keys = len(self._slam.graph)
-        is_new = keys != self._map_keys and self.has_listeners(topics.SLAM_MAP.name)
+        keys = self.key_scans
+        is_new = keys != self._drawn_keys and self.has_listeners(topics.SLAM_MAP.name)
         if is_new and not self.worker.is_busy:
-            self._map_keys, renderer = keys, self._renderer
-            self.worker.run(
-                self.map_drawer(),
-                partial(self.publish, topics.SLAM_MAP.name),
-                is_dropped=lambda: self._renderer is not renderer,  # another map began
-            )
+            self._drawn_keys = keys
+            self._use(Slam.placed_scans, self._draw)
 
-    def map_drawer(self) -> Callable[[], OccupancyGrid]:
+    def _draw(self, scans: list[MapScan]) -> None:
+        renderer = self._renderer
+        self.worker.run(
+            self._drawer(scans),
+            partial(self.publish, topics.SLAM_MAP.name),
+            is_dropped=lambda: self._renderer is not renderer,  # another map began
+        )
+
+    async def map_drawer(self) -> Callable[[], OccupancyGrid]:
         """Return what draws the present map, in the worker: 2 s with 2,000 scans."""
-        renderer, scans = self._renderer, self._slam.placed_scans()
-        frame_id, stamp_ns = self.params.map_frame, self._newest_ns
+        scans: Any = await self._matcher.submit(self._slam.placed_scans)
+        return self._drawer(scans)
+
+    def _drawer(self, scans: list[MapScan]) -> Callable[[], OccupancyGrid]:
+        renderer, frame_id = self._renderer, self.params.map_frame
+        stamp_ns = self._newest_ns
         return lambda: grid_to_message(*renderer.render(scans), frame_id, stamp_ns)
+
+
+def _found(slam: Slam, estimate: SlamEstimate | None) -> _Found | None:
+    if estimate is None:
+        return None
+    graph = slam.graph
+    trajectory = [
+        (key.stamp_ns, graph.pose(node))
+        for node, key in enumerate(graph.keys if estimate.is_corrected else ())
+    ]
+    return _Found(
+        estimate, slam.unmatched_in_a_row, len(graph), slam.loop_closures, trajectory
+    )
+
+
+def _set_params(slam: Slam, params: SlamParams) -> None:
+    slam.params = params

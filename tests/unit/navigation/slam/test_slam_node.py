@@ -68,17 +68,21 @@ def scan_message(step: Step, *, mirrored: bool = False) -> LaserScan:
     )
 
 
-def feed(
-    graph: GraphHarness, steps: list[Step], *, odometry: bool = True, **options: Any
+def publish_step(
+    graph: GraphHarness, step: Step, *, odometry: bool = True, **options: Any
 ) -> None:
+    graph.publish(SCAN, scan_message(step, **options))
+    if odometry:
+        message = Odometry(
+            header=header(step.stamp_ns, "odom"), child_frame_id="base_link"
+        )
+        message.pose.pose = pose_message(step.odom_T_base)
+        graph.publish(ODOMETRY, message)
+
+
+def feed(graph: GraphHarness, steps: list[Step], **options: Any) -> None:
     for step in steps:
-        graph.publish(SCAN, scan_message(step, **options))
-        if odometry:
-            message = Odometry(
-                header=header(step.stamp_ns, "odom"), child_frame_id="base_link"
-            )
-            message.pose.pose = pose_message(step.odom_T_base)
-            graph.publish(ODOMETRY, message)
+        publish_step(graph, step, **options)
         graph.run_for(0.2)
 
 

@@ -42,7 +42,7 @@ class MapStore(Protocol):
 
     @property
     def worker(self) -> Worker:
-        """Where files are written."""
+        """Where files are read and written."""
 
     @property
     def is_probability_map(self) -> bool:
@@ -62,7 +62,7 @@ class MapServices:
             SaveMap, "map_saver/save_map", self._save, callback_group=self._group
         )
 
-    def _load(self, request: Any, response: Any) -> Any:
+    async def _load(self, request: Any, response: Any) -> Any:
         path = _path(request.map_url)
         if path is None or not _exists(path):
             self._error(f"map {request.map_url!r} not loaded: the file does not exist")
@@ -72,7 +72,7 @@ class MapServices:
         try:
             described = read_description(path)
             response.result = response.RESULT_INVALID_MAP_DATA
-            cells = read_cells(described)
+            cells: Any = await self._store.worker.submit(lambda: read_cells(described))
             height, width = cells.shape
             spec = GridSpec(described.resolution, width, height, described.origin)
         except (FileFormatError, InvalidValueError) as error:

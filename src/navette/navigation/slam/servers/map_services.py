@@ -32,8 +32,8 @@ class MapSession(Protocol):
         """The present parameters."""
 
     @property
-    def scan_graph(self) -> ScanGraph:
-        """The present scans and poses."""
+    def key_scans(self) -> int:
+        """Number of scans in the map."""
 
     @property
     def is_paused(self) -> bool:
@@ -43,13 +43,16 @@ class MapSession(Protocol):
     def worker(self) -> Worker:
         """Where maps are drawn, and files written and read."""
 
-    def map_drawer(self) -> Callable[[], OccupancyGrid]:
+    async def copied_graph(self) -> ScanGraph:
+        """Return a copy of the present scans and poses."""
+
+    async def map_drawer(self) -> Callable[[], OccupancyGrid]:
         """Return what draws the present map, in the worker."""
 
     def continue_map(self, graph: ScanGraph, start: Pose2, *, is_mapping: bool) -> None:
         """Continue a map at a rough pose of the robot, or localize in it."""
 
-    def empty_map(self) -> None:
+    async def empty_map(self) -> None:
         """Begin a new map where the robot is."""
 
     def restart(self) -> None:
@@ -78,7 +81,8 @@ class SlamMapServices:
 
     async def _save(self, request: Any, response: Any) -> Any:
         """Write MAP.yaml and its image, and MAP.slam to continue the map."""
-        draw, graph = self._session.map_drawer(), self._session.scan_graph.copy()
+        draw = await self._session.map_drawer()
+        graph = await self._session.copied_graph()
 
         def write() -> str:
             stem = _stem(request.map_url, "map_url")
@@ -96,11 +100,11 @@ class SlamMapServices:
 
     async def _save_image(self, request: Any, response: Any) -> Any:
         """Write NAME.yaml and its image."""
-        if not len(self._session.scan_graph):
+        if not self._session.key_scans:
             self._error("map not saved: no scan has arrived")
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
-        draw = self._session.map_drawer()
+        draw = await self._session.map_drawer()
         name = request.name.data or _UNNAMED
         is_saved = await self._saved(
             "map", lambda: _write_image(_stem(name, "name"), draw())
@@ -112,7 +116,7 @@ class SlamMapServices:
 
     async def _serialize(self, request: Any, response: Any) -> Any:
         """Write FILENAME.slam: scans and pose graph."""
-        graph = self._session.scan_graph.copy()
+        graph = await self._session.copied_graph()
 
         def write() -> Path:
             path = _with_suffix(_stem(request.filename, "filename"))
@@ -179,9 +183,9 @@ class SlamMapServices:
         response.status = True
         return response
 
-    def _reset(self, request: Any, response: Any) -> Any:
+    async def _reset(self, request: Any, response: Any) -> Any:
         """Begin a new map where the robot is."""
-        self._session.empty_map()
+        await self._session.empty_map()
         self._session.pause(request.pause_new_measurements)
         response.result = response.RESULT_SUCCESS
         return response
@@ -192,8 +196,8 @@ class SlamMapServices:
         return response
 
     async def _get(self, _: Any, response: Any) -> Any:
-        if len(self._session.scan_graph):
-            draw = self._session.map_drawer()
+        if self._session.key_scans:
+            draw = await self._session.map_drawer()
             response.map = await self._session.worker.submit(draw)
         return response
 
