@@ -268,9 +268,10 @@ def _cells_around(pose: Pose2, reach_m: float, spec: GridSpec) -> CellWindow:
 def _seen_also(now: Layer, before: Layer | None, near: CellWindow) -> Layer:
     """Return a layer whose cells in a window are known where they are in one of two.
 
-    The layer of now if it shows all of them, otherwise one of the window only.
+    The layer of now if it shows all of them, otherwise one of the window only. An empty
+    window: the robot is far outside of the map.
     """
-    if before is None:
+    if before is None or near.is_empty:
         return now
     shift = _shift_of_cells(now.spec, before.spec)
     if shift is not None and not _has_lost(now.cells, before.cells, near, *shift):

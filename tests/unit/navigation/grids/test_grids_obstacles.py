@@ -260,6 +260,9 @@ def test_a_map_that_only_grew_is_used_as_it_is() -> None:
     assert _seen_also(now, before, CellWindow.whole(large.shape)).cells[7, 7] == 0
 
 
+AFAR = Pose2(500.0, 0.0, 0.0)
+
+
 class Driving:
     """The poses of a robot that drives about in the map."""
 
@@ -316,6 +319,21 @@ def test_a_robot_that_leaves_what_is_kept_sees_the_newest_map() -> None:
         assert placed is not None
         unseen.append(len(placed.unseen))
     assert unseen == [0, 0, 100]
+
+
+def test_a_new_map_may_be_far_from_the_robot() -> None:
+    outline = Footprint.from_flat((0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2))
+    tracker = ObstacleTracker(Driving(), outline, hand_m=0.0)
+    for stamp_ns, spec in enumerate(
+        (GridSpec(0.1, 60, 60, Pose2(-3.0, -3.0, 0.0)), GridSpec(0.05, 40, 40, AFAR))
+    ):
+        cells = np.zeros(spec.shape, np.int8)
+        tracker.remember(ReceivedMap(cells, spec), None, stamp_ns, 0)
+    grid = grid_to_message(np.zeros((3, 3), np.int8), GridSpec(0.1, 3, 3), "map", 1)
+    tracker.receive(grid, 0)
+    placed = tracker.place(0, LETHAL, reach_m=1.0, unseen_reach_m=1.0)
+    assert placed is not None
+    assert len(placed.unseen) > 0  # this map does not show the place of the robot
 
 
 @settings(max_examples=40, deadline=None)
