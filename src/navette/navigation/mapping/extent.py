@@ -35,10 +35,11 @@ def known_corners(
 def grow_to_hold(
     spec: GridSpec, points: NDArray[np.float64], params: MapMemoryParams
 ) -> Growth | None:
-    """Enlarge the map's extent until it holds ``points``; None if it already does.
+    """Enlarge the map's extent until it holds ``points``; None: not needed, or in vain.
 
     Grows on the required sides by multiples of ``growth_m`` while an edge stays within
-    ``max_size_m``; points beyond that stay outside.
+    ``max_size_m``; points beyond that stay outside. A loaded map with smaller cells
+    gets no more of them than a map with ``resolution_m``: they need the memory.
 
     Args:
         spec: the present extent.
@@ -47,11 +48,16 @@ def grow_to_hold(
     """
     local = spec.origin.inverse().apply(points) / spec.resolution
     step = max(1, round(params.growth_m / spec.resolution))
-    most = math.floor(params.max_size_m / spec.resolution + 1e-9)
+    cell_m = max(spec.resolution, params.resolution_m)
+    most = math.floor(params.max_size_m / cell_m + 1e-9)
     columns = _sides(local[:, 0], spec.width, step, most)
     rows = _sides(local[:, 1], spec.height, step, most)
     if columns == (0, 0) and rows == (0, 0):
         return None
+    added = np.array([columns, rows])
+    low, high = -added[:, 0], (spec.width, spec.height) + added[:, 1]
+    if (local.max(axis=0) <= low).any() or (local.min(axis=0) >= high).any():
+        return None  # all points would stay outside
     shift = Pose2(-columns[0] * spec.resolution, -rows[0] * spec.resolution, 0.0)
     larger = GridSpec(
         spec.resolution,

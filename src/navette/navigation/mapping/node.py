@@ -145,6 +145,7 @@ class MapMemoryNode(StageNode):
         self._has_nav2_reader = False
         self._is_starting = True
         self._map_ns = -1  # stamp of the newest map
+        self._is_outside = False  # the robot at the newest costmap
         self._tracker = self._new_tracker()
         trajectory = self.resolve_topic_name(topics.TRAJECTORY.name)
         self._trajectories = next(
@@ -358,11 +359,24 @@ class MapMemoryNode(StageNode):
         if not self._rebuilding.change(lambda memory: memory.fuse(costmap)):
             return
         self._gate.fused(arrival.costmap, self._now_ns())
+        self._check_extent(costmap.map_T_base)
         if self._is_corrected:
             odom_T_base = self._tracker.in_odom(costmap.map_T_base)
             self._keyframes.add(costmap, odom_T_base)
         self._last_stamp_ns = costmap.stamp_ns
         self._publish_map(costmap.stamp_ns)
+
+    def _check_extent(self, robot: Pose2) -> None:
+        """Warn when the robot leaves the largest map: nothing is remembered there."""
+        spec, was_outside = self._memory.spec, self._is_outside
+        self._is_outside = not spec.contains(*spec.cell_of(robot.x, robot.y))
+        if self._is_outside and not was_outside:
+            self.get_logger().warning(
+                f"the robot at ({robot.x:.1f}, {robot.y:.1f}) is outside of the map, "
+                f"which cannot grow to there from {spec.width} x {spec.height} cells "
+                f"of {spec.resolution} m: max_size_m is {self.params.max_size_m} m at "
+                f"resolution_m {self.params.resolution_m} m"
+            )
 
     def _with_hits(self, arrival: _Arrival) -> PlacedCostmap:
         """Return the costmap with the points of its stamp: most are not fused."""

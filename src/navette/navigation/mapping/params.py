@@ -17,7 +17,12 @@ class MapMemoryParams(FrameParams):
     center_x_m: float = param(0.0, "centre of the map in the map frame")
     center_y_m: float = param(0.0, "centre of the map in the map frame")
     growth_m: float = param(10.0, "the map grows by multiples of this", above=0.0)
-    max_size_m: float = param(500.0, "largest edge of the map", above=0.0)
+    max_size_m: float = param(
+        500.0,
+        "largest edge of the map; with a map file of smaller cells, as many cells as "
+        "with resolution_m",
+        above=0.0,
+    )
     map_file: str = param(
         "",
         "map file (YAML of map_server) to start with; scans change it; empty: unknown",

@@ -154,15 +154,24 @@ def test_growth_is_bounded(fusion) -> None:
 
 @pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
 @pytest.mark.parametrize("far", [30.0, 1e6, 9e8, -9e8])
-def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
+def test_a_robot_far_outside_the_largest_map_leaves_it_as_it_is(
     fusion: str, far: float
 ) -> None:
     mem = memory(
         fusion=fusion, footprint_m=(0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5)
     )
     assert mem.fuse(costmap(free(), Pose2(far, far, 0.3)))
-    assert mem.spec.shape == (200, 200)
+    assert mem.spec.shape == (100, 100)
     assert (mem.occupancy() == -1).all()
+
+
+def test_a_loaded_map_of_smaller_cells_gets_no_more_of_them() -> None:
+    mem = memory()
+    spec = GridSpec(SPEC.resolution / 2, 100, 100, Pose2(-2.5, -2.5, 0.0))
+    mem.load(np.zeros(spec.shape, np.int8), spec)
+    for x in np.arange(0.0, 40.0, 1.5):
+        mem.fuse(costmap(free(), Pose2(float(x), 0.0, 0.0)))
+    assert mem.spec.width == 180  # 200 less what does not fill growth_m
 
 
 def test_cells_under_the_body_are_free() -> None:

@@ -121,6 +121,21 @@ def test_a_map_is_published_at_the_start_also_for_late_subscribers() -> None:
         assert spec.shape == (200, 200)
 
 
+def test_a_robot_that_leaves_the_largest_map_is_reported_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with GraphHarness() as graph:
+        rig = Rig(graph, max_size_m=20.0)
+        reports = []
+        for step, x in enumerate((0.0, 30.0, 31.0, 3.0, 40.0)):
+            rig.odometry(x, 0.0, step * 2000 * MS)
+            rig.costmap(with_post(1.0, 0.5), step * 2000 * MS)
+            rig.run_ms(2000)
+            reports.append(capsys.readouterr().err.count("outside of the map"))
+        assert reports == [0, 1, 0, 0, 1]
+        assert rig.cell(AHEAD + 1.0, 0.5) == 100
+
+
 def test_an_empty_first_scan_does_not_become_the_map() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
