@@ -69,7 +69,7 @@ class BodySpace:
             least,
         )
         closed = np.zeros((spec.height + 2 * reach, spec.width + 2 * reach), np.uint64)
-        _close(closed, np.argwhere(lethal), np.ascontiguousarray(stamp[::-1, ::-1]))
+        _close(closed, lethal, np.ascontiguousarray(stamp[::-1, ::-1]))
         inner = slice(reach, -reach or None)
         self._open = np.ascontiguousarray(~closed[inner, inner])
         self._spec, self._start = spec, start
@@ -153,15 +153,72 @@ def _fill_stamp(
                     stamp[i, j] |= bit
 
 
+@kernel
+def _close(closed: Masks, lethal: NDArray[np.bool_], stamp: Masks) -> None:
+    """Close the poses at which the body covers a lethal cell.
+
+    A body that covers a cell inside an area of lethal cells covers its border too, or
+    lies within: such a cell closes only the poses of a base in it.
+    """
+    height, width = lethal.shape
+    middle = stamp.shape[0] // 2
+    split = _split_headings(stamp)
+    rest = stamp & split
+    for row in range(height):
+        for column in range(width):
+            if not lethal[row, column]:
+                continue
+            if not _is_inside(lethal, row, column):
+                _stamp(closed, row, column, stamp)
+                continue
+            closed[row + middle, column + middle] |= stamp[middle, middle]
+            if split:
+                _stamp(closed, row, column, rest)
+
+
 @kernel(allocates=False)
-def _close(closed: Masks, cells: NDArray[np.int64], stamp: Masks) -> None:
+def _stamp(closed: Masks, row: int, column: int, stamp: Masks) -> None:
     edge = stamp.shape[0]
-    for n in range(cells.shape[0]):
-        row, column = cells[n, 0], cells[n, 1]
-        for i in range(edge):
-            line = closed[row + i, column : column + edge]
-            for j in range(edge):
-                line[j] |= stamp[i, j]
+    for i in range(edge):
+        line = closed[row + i, column : column + edge]
+        for j in range(edge):
+            line[j] |= stamp[i, j]
+
+
+@kernel(allocates=False)
+def _is_inside(lethal: NDArray[np.bool_], row: int, column: int) -> bool:
+    """Return whether the four neighbours of a cell are lethal too."""
+    height, width = lethal.shape
+    if row == 0 or column == 0 or row == height - 1 or column == width - 1:
+        return False
+    return bool(
+        lethal[row - 1, column]
+        and lethal[row + 1, column]
+        and lethal[row, column - 1]
+        and lethal[row, column + 1]
+    )
+
+
+@kernel(allocates=False)
+def _split_headings(stamp: Masks) -> np.uint64:
+    """Return the headings at which no steps within the body lead to its base.
+
+    From each covered cell one of the two neighbours nearer to the base must be covered,
+    so that neighbouring cells connect all of the body.
+    """
+    edge, middle = stamp.shape[0], stamp.shape[0] // 2
+    split = np.uint64(0)
+    for i in range(edge):
+        for j in range(edge):
+            if i == middle and j == middle:
+                continue
+            nearer = np.uint64(0)
+            if i != middle:
+                nearer |= stamp[i + (1 if i < middle else -1), j]
+            if j != middle:
+                nearer |= stamp[i, j + (1 if j < middle else -1)]
+            split |= stamp[i, j] & ~nearer
+    return split
 
 
 @kernel
