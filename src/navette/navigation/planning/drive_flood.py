@@ -4,7 +4,9 @@ Poses are cells and headings, one bit each. Moves are straight, forward and in r
 and to the next heading: in place, or along an arc; an omnidirectional drive also
 slides. Of the poses in a cell and heading the first continues, from its exact position,
 as in hybrid A* (Dolgov et al. 2008). Start and goal, from which moves are undone, are
-flooded in turns (Pohl 1971): the smaller of two separate regions decides.
+flooded in turns (Pohl 1971): the smaller of two separate regions decides. Each flood
+continues from its pose nearest to where the other began, along cells that are open at
+any heading: a path is found long before all poses between are reached.
 """
 
 import math
@@ -15,13 +17,17 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.geometry import ACKERMANN, OMNI, Pose2
+from navette.navigation.grids import sparse_zeros
+from navette.navigation.planning.bucket_queue import WAITING, BucketQueue, pop, push
 
 HEADINGS = 64
 HEADING_RAD = math.tau / HEADINGS
-_MOST_WAITING = 2_000_000  # poses whose moves are still to be made, of one flood
+_MOST_POSES = 8_000_000  # of one flood: one to four seconds, up to 0.7 GB
+_LARGE_BYTES = 1 << 20  # most floods reach few poses of a map
 _AROUND = 4  # cells beside two floods' path in which one exact path is looked for
 _STRAIGHT = 1.5  # cells of a straight motion: it always leaves its cell
 _MOST_MOVES = 8  # of a drive
+_COUNT, _DONE, _LOWEST = 0, 1, 2  # of a flood's state
 
 Masks = NDArray[np.uint64]
 """(H, W) a bit for each heading."""
@@ -58,7 +64,8 @@ class DrivePath(NamedTuple):
     """Result of :func:`find_drive_path`.
 
     Attributes:
-        poses: (M, 3) x, y (m), yaw (rad) of a path of about the fewest moves, or None.
+        poses: (M, 3) x, y (m), yaw (rad) of a path, or None. Near it, none has fewer
+            moves.
         is_proof: without poses: whether all motions from one end were tried.
     """
 
@@ -91,7 +98,9 @@ def find_drive_path(
     bits = np.uint64(1) << headings.astype(np.uint64)
     nth, which = np.nonzero(open_[tuple(cells.T)][:, None] & bits)
     ends = np.column_stack([cells[nth, ::-1] + 0.5, headings[which]])
-    met = _flood(open_, begin, ends, steps, both=True)
+    first = np.floor(begin[:, 1::-1]).astype(np.int64)
+    toward = _away_from(open_, cells), _away_from(open_, first)
+    met = _flood(open_, begin, ends, steps, toward, both=True)
     if not met.chains:
         return DrivePath(None, is_proof=met.is_complete)
     # Where two floods meet they are off by a part of a cell: one along them is exact,
@@ -99,9 +108,9 @@ def find_drive_path(
     corridor = np.zeros_like(open_)
     for chain in met.chains:
         _copy_around(corridor, open_, chain[:, :2])
-    exact = _flood(corridor, begin, ends, steps, both=False)
+    exact = _flood(corridor, begin, ends, steps, None, both=False)
     if not exact.chains:
-        exact = _flood(open_, begin, ends, steps, both=False)
+        exact = _flood(open_, begin, ends, steps, toward, both=False)
     if not exact.chains:
         return DrivePath(None, is_proof=exact.is_complete)
     path = _replayed(begin[0], exact.chains[0], steps)
@@ -143,32 +152,83 @@ class _Meeting(NamedTuple):
     is_complete: bool
 
 
+class _Flood(NamedTuple):
+    """The poses that moves reach from some poses.
+
+    Attributes:
+        reached: (H, W) the poses.
+        origin: (H, W, headings) how each was reached, see :func:`_spread`; 0: not.
+        poses: (N, 3) u, v in cells, heading of each, as it was reached first.
+        state: number of poses; of those whose moves were made in order; the bucket
+            before which all are empty.
+        queue: indices of the poses whose moves are to be made, by ``toward``.
+        pool: of the queue.
+        toward: (H, W) cells to where the other flood began; without cells: the moves
+            are made in the order of the poses, so that paths have the fewest.
+        shift: (headings, moves, 2) du, dv in cells.
+        after: (headings, moves) heading after each.
+    """
+
+    reached: Masks
+    origin: NDArray[np.uint8]
+    poses: NDArray[np.float32]
+    state: NDArray[np.int64]
+    queue: BucketQueue
+    pool: NDArray[np.int64]
+    toward: NDArray[np.int32]
+    shift: NDArray[np.float64]
+    after: NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls,
+        open_: Masks,
+        begin: NDArray[np.float64],
+        toward: NDArray[np.int32] | None,
+        shift: NDArray[np.float64],
+        after: NDArray[np.int64],
+    ) -> "_Flood":
+        """Return a flood that begins at poses (N, 3) u, v, heading."""
+        reached = sparse_zeros(open_.shape, np.uint64, large_bytes=_LARGE_BYTES)
+        shape = *open_.shape, HEADINGS
+        origin = sparse_zeros(shape, np.uint8, large_bytes=_LARGE_BYTES)
+        poses = np.empty((_MOST_POSES, 3), np.float32)
+        poses[: len(begin)] = begin
+        column, row, heading = poses[: len(begin)].astype(np.int64).T  # as rounded
+        bits = np.uint64(1) << heading.astype(np.uint64)
+        np.bitwise_or.at(reached, (row, column), bits)
+        if toward is None:
+            toward = np.empty((0, 0), np.int32)
+        buckets = 1 << int(toward.max(initial=0) + 1).bit_length()
+        queue = BucketQueue.empty(buckets, 0)
+        pool = np.empty(_MOST_POSES + 1, np.int64)
+        state = np.array([len(begin), 0, 0])
+        flood = cls(reached, origin, poses, state, queue, pool, toward, shift, after)
+        _queue_first(flood)
+        return flood
+
+
 def _flood(
     open_: Masks,
     start: NDArray[np.float64],
     ends: NDArray[np.float64],
     steps: tuple[NDArray[np.float64], NDArray[np.int64]],
+    toward: tuple[NDArray[np.int32], NDArray[np.int32]] | None,
     *,
     both: bool,
 ) -> _Meeting:
     """Flood from poses (N, 3) u, v, heading: from both ends in turns, or the start."""
-    waiting = np.empty((2, _MOST_WAITING, 3), np.float32)
-    count, reached = np.zeros(2, np.int64), np.zeros((2, *open_.shape), np.uint64)
-    # Pages of what is not reached are never touched.
-    origin = np.zeros((2, *open_.shape, HEADINGS), np.uint8)
-    for side, poses in enumerate((start, ends)):
-        count[side] = n = len(poses)
-        waiting[side, :n] = poses
-        column, row, heading = waiting[side, :n].astype(np.int64).T  # as it is rounded
-        bits = np.uint64(1) << heading.astype(np.uint64)
-        np.bitwise_or.at(reached[side], (row, column), bits)
-    *met, is_complete = _flood_both(
-        open_, reached, origin, waiting, count, *steps, both
+    to_ends, to_start = toward or (None, None)
+    shift, after = steps
+    floods = (
+        _Flood.of(open_, start, to_ends, shift[0], after[0]),
+        _Flood.of(open_, ends, to_start, shift[1], after[1]),
     )
-    if met[0] < 0:
+    row, column, heading, is_complete = _spread(open_, *floods, both)
+    if row < 0:
         return _Meeting((), is_complete)
-    chains = (_chain(origin, side, met, steps) for side in range(2))
-    return _Meeting(tuple(chains), is_complete=True)
+    last = [row, column, heading]
+    return _Meeting(tuple(_chain(each, last) for each in floods), is_complete=True)
 
 
 def _copy_around(to: Masks, of: Masks, cells: NDArray[np.int64]) -> None:
@@ -180,20 +240,14 @@ def _copy_around(to: Masks, of: Masks, cells: NDArray[np.int64]) -> None:
         to[rows, columns] = of[rows, columns]
 
 
-def _chain(
-    origin: NDArray[np.uint8],
-    side: int,
-    last: list[int],
-    steps: tuple[NDArray[np.float64], NDArray[np.int64]],
-) -> NDArray[np.int64]:
+def _chain(flood: _Flood, last: list[int]) -> NDArray[np.int64]:
     """Return (M, 4) row, column, heading, move from where a flood began to a pose."""
-    shift, after = steps
     (row, column, k), rows = last, []
-    while code := int(origin[side, row, column, k]):
+    while code := int(flood.origin[row, column, k]):
         move = (code - 1) % _MOST_MOVES
         rows.append((row, column, k, move))
-        k = int(k - after[side, 0, move]) % HEADINGS
-        du, dv = shift[side, k, move].tolist()
+        k = int(k - flood.after[0, move]) % HEADINGS
+        du, dv = flood.shift[k, move].tolist()
         more = (code - 1) // _MOST_MOVES
         row += math.floor(-dv) + more // 4 - 1
         column += math.floor(-du) + more % 4 - 1
@@ -215,71 +269,132 @@ def _replayed(
     return poses.astype(np.float64)
 
 
-@kernel(allocates=False)
-def _flood_both(
-    open_: Masks,
-    reached: Any,
-    origin: Any,
-    waiting: Any,
-    count: Any,
-    shift: Any,
-    after: Any,
-    both: bool,
-) -> tuple[int, int, int, bool]:
-    """Reach poses by moves, breadth first, from both ends in turns or from the first.
+@kernel
+def _away_from(open_: Masks, cells: NDArray[np.int64]) -> NDArray[np.int32]:
+    """Return (H, W) the steps to cells (N, 2) through cells open at any heading.
 
-    Args:
-        open_: open poses.
-        reached: (2, H, W) the ends; becomes what each flood reaches.
-        origin: (2, H, W, headings) 0; becomes how each pose was reached, see below.
-        waiting: (2, N, 3) u, v in cells, heading; the first ``count`` are the ends.
-            Used in a circle.
-        count: (2,) poses of each flood; grows.
-        shift: du, dv of each flood, heading and move.
-        after: heading after each.
+    Cells without a path to them get more than any other.
+    """
+    height, width = open_.shape
+    steps = np.full((height, width), -1, np.int32)
+    queue = np.empty(height * width, np.int32)
+    done, count, most = 0, 0, 0
+    for n in range(cells.shape[0]):
+        row, column = cells[n, 0], cells[n, 1]
+        if steps[row, column] < 0:
+            steps[row, column] = 0
+            queue[count] = row * width + column
+            count += 1
+    while done < count:
+        row, column = queue[done] // width, queue[done] % width
+        done += 1
+        most = steps[row, column]
+        for i in range(max(0, row - 1), min(height, row + 2)):
+            for j in range(max(0, column - 1), min(width, column + 2)):
+                if steps[i, j] < 0 and open_[i, j] != 0:
+                    steps[i, j] = most + 1
+                    queue[count] = i * width + j
+                    count += 1
+    for row in range(height):
+        for column in range(width):
+            if steps[row, column] < 0:
+                steps[row, column] = most + 1
+    return steps
+
+
+@kernel(allocates=False)
+def _queue_first(flood: _Flood) -> None:
+    """Queue the poses where a flood begins."""
+    if flood.toward.size:
+        for index in range(flood.state[_COUNT]):
+            _queue(flood, index)
+
+
+@kernel(allocates=False, forceinline=True)
+def _queue(flood: Any, index: int) -> None:
+    u, v = flood.poses[index, 0], flood.poses[index, 1]
+    bucket = flood.toward[int(v), int(u)]
+    push(flood.pool, flood.queue, bucket, index)
+    flood.state[_LOWEST] = min(flood.state[_LOWEST], bucket)
+
+
+@kernel(allocates=False, forceinline=True)
+def _next(flood: Any) -> int:
+    """Return the pose whose moves are made next, or −1."""
+    state = flood.state
+    if flood.toward.size == 0:
+        if state[_DONE] == state[_COUNT]:
+            return -1
+        state[_DONE] += 1
+        return int(state[_DONE] - 1)
+    while flood.queue.state[WAITING]:
+        index = pop(flood.pool, flood.queue, state[_LOWEST])
+        if index >= 0:
+            return int(index)
+        state[_LOWEST] += 1
+    return -1
+
+
+@kernel(allocates=False)
+def _spread(
+    open_: Masks, start: _Flood, end: _Flood, both: bool
+) -> tuple[int, int, int, bool]:
+    """Spread two floods in turns, or the first, until they meet.
 
     Returns:
         Row, column and heading where the floods meet, else −1 and whether all poses
         were reached that can be.
+    """
+    mine, other = start, end
+    while True:
+        index = _next(mine)
+        if index < 0:
+            return -1, -1, -1, True
+        u, v, heading = mine.poses[index]
+        bit = np.uint64(1) << np.uint64(heading)
+        if other.reached[int(v), int(u)] & bit:
+            return int(v), int(u), int(heading), True
+        if not _make_moves(open_, mine, u, v, int(heading)):
+            return -1, -1, -1, False
+        if both:
+            mine, other = other, mine
+
+
+@kernel(allocates=False, forceinline=True)
+def _make_moves(open_: Masks, flood: Any, u: float, v: float, k: int) -> bool:
+    """Reach poses by each move from one; return whether there was room for all.
 
     A pose is reached from the cell that lies ``floor(-shift)`` away, or the next, as
     within both cells the positions are any. ``origin`` is 1 + the move + the number of
     moves · (4 · rows + columns), these + 1 as rounded positions may add another cell.
     """
     height, width = open_.shape
-    one, room = np.uint64(1), waiting.shape[1]
-    done, other_done, side = 0, 0, 0
-    while done < count[side]:
-        u, v = waiting[side, done % room, 0], waiting[side, done % room, 1]
-        k = int(waiting[side, done % room, 2])
-        bit = one << np.uint64(k)
-        if reached[1 - side, int(v), int(u)] & bit:
-            return int(v), int(u), k, True
-        for m in range(after.shape[2]):
-            # As it is stored: rounded, a position may lie in the next cell.
-            x = np.float32(u + shift[side, k, m, 0])
-            y = np.float32(v + shift[side, k, m, 1])
-            if not (0.0 <= x < width and 0.0 <= y < height):
-                continue
-            row, column, heading = int(y), int(x), after[side, k, m]
-            new = one << np.uint64(heading)
-            if reached[side, row, column] & new or not open_[row, column] & new:
-                continue
-            middle = open_[int(0.5 * (v + y)), int(0.5 * (u + x))]
-            if not middle & (bit | new):
-                continue
-            if count[side] - done == room:
-                return -1, -1, -1, False
-            rows = int(v) - row - math.floor(-shift[side, k, m, 1]) + 1
-            columns = int(u) - column - math.floor(-shift[side, k, m, 0]) + 1
-            code = 1 + m + _MOST_MOVES * (4 * rows + columns)
-            origin[side, row, column, heading] = code
-            reached[side, row, column] |= new
-            at = count[side] % room
-            waiting[side, at, 0], waiting[side, at, 1] = x, y
-            waiting[side, at, 2] = heading
-            count[side] += 1
-        done += 1
-        if both:
-            done, other_done, side = other_done, done, 1 - side
-    return -1, -1, -1, True
+    one, state = np.uint64(1), flood.state
+    bit = one << np.uint64(k)
+    for m in range(flood.after.shape[1]):
+        # As it is stored: rounded, a position may lie in the next cell.
+        x = np.float32(u + flood.shift[k, m, 0])
+        y = np.float32(v + flood.shift[k, m, 1])
+        if not (0.0 <= x < width and 0.0 <= y < height):
+            continue
+        row, column, heading = int(y), int(x), flood.after[k, m]
+        new = one << np.uint64(heading)
+        if flood.reached[row, column] & new or not open_[row, column] & new:
+            continue
+        middle = open_[int(0.5 * (v + y)), int(0.5 * (u + x))]
+        if not middle & (bit | new):
+            continue
+        count = state[_COUNT]
+        if count == flood.poses.shape[0]:
+            return False
+        rows = int(v) - row - math.floor(-flood.shift[k, m, 1]) + 1
+        columns = int(u) - column - math.floor(-flood.shift[k, m, 0]) + 1
+        code = 1 + m + _MOST_MOVES * (4 * rows + columns)
+        flood.origin[row, column, heading] = code
+        flood.reached[row, column] |= new
+        flood.poses[count, 0], flood.poses[count, 1] = x, y
+        flood.poses[count, 2] = heading
+        state[_COUNT] = count + 1
+        if flood.toward.size:
+            _queue(flood, count)
+    return True

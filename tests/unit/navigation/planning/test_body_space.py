@@ -10,6 +10,7 @@ from navette.navigation.grids import (
     make_obstacles,
     make_outline,
 )
+from navette.navigation.planning import drive_flood
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
 from navette.navigation.planning.drive_flood import DriveMoves
@@ -158,6 +159,18 @@ def test_a_small_region_around_the_goal_decides(drive: str) -> None:
     assert path == (None, True)
     there = space.drive_to(np.array([[700, 700]]), DriveMoves(drive, 0.8))
     assert there.poses is not None
+
+
+def test_the_work_of_a_path_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between two separate halves of a hall; within one a path needs few poses."""
+    monkeypatch.setattr(drive_flood, "_MOST_POSES", 10_000)
+    lethal, spec = np.zeros((400, 400), np.bool_), GridSpec(0.05, 400, 400)
+    lethal[200] = True
+    space = BodySpace(lethal, spec, BODY, Pose2(5.0, 5.0, 0.3), margin_m=0.0)
+    far, near = np.array([[300, 200]]), np.array([[120, 200]])
+    moves = DriveMoves("ackermann", 0.8)
+    assert space.drive_to(far, moves) == (None, False)
+    assert space.drive_to(near, moves).poses is not None
 
 
 def test_the_last_heading_is_the_one_wanted() -> None:
