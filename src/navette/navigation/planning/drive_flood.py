@@ -4,9 +4,9 @@ Poses are cells and headings, one bit each. Moves are straight, forward and in r
 and to the next heading: in place, or along an arc; an omnidirectional drive also
 slides. Of the poses in a cell and heading the first continues, from its exact position,
 as in hybrid A* (Dolgov et al. 2008). Start and goal, from which moves are undone, are
-flooded in turns (Pohl 1971): the smaller of two separate regions decides. Each flood
-continues from its pose nearest to where the other began, along cells that are open at
-any heading: a path is found long before all poses between are reached.
+flooded in turns (Pohl 1971): the smaller of two separate regions decides. At first each
+flood continues from its pose nearest to where the other began, along cells that are
+open at any heading: most paths are found long before all poses between are reached.
 """
 
 import math
@@ -22,7 +22,8 @@ from navette.navigation.planning.bucket_queue import WAITING, BucketQueue, pop, 
 
 HEADINGS = 64
 HEADING_RAD = math.tau / HEADINGS
-_MOST_POSES = 8_000_000  # of one flood: one to four seconds, up to 0.7 GB
+_ROOM = 2_000_000  # poses of a guided flood; of another, those still to be moved
+_MOST_POSES = 40_000_000  # of one flood: two to four seconds
 _LARGE_BYTES = 1 << 20  # most floods reach few poses of a map
 _AROUND = 4  # cells beside two floods' path in which one exact path is looked for
 _STRAIGHT = 1.5  # cells of a straight motion: it always leaves its cell
@@ -101,6 +102,8 @@ def find_drive_path(
     first = np.floor(begin[:, 1::-1]).astype(np.int64)
     toward = _away_from(open_, cells), _away_from(open_, first)
     met = _flood(open_, begin, ends, steps, toward, both=True)
+    if not met.is_complete:
+        met = _flood(open_, begin, ends, steps, None, both=True)
     if not met.chains:
         return DrivePath(None, is_proof=met.is_complete)
     # Where two floods meet they are off by a part of a cell: one along them is exact,
@@ -110,7 +113,7 @@ def find_drive_path(
         _copy_around(corridor, open_, chain[:, :2])
     exact = _flood(corridor, begin, ends, steps, None, both=False)
     if not exact.chains:
-        exact = _flood(open_, begin, ends, steps, toward, both=False)
+        exact = _flood(open_, begin, ends, steps, None, both=False)
     if not exact.chains:
         return DrivePath(None, is_proof=exact.is_complete)
     path = _replayed(begin[0], exact.chains[0], steps)
@@ -157,8 +160,9 @@ class _Flood(NamedTuple):
 
     Attributes:
         reached: (H, W) the poses.
-        origin: (H, W, headings) how each was reached, see :func:`_spread`; 0: not.
-        poses: (N, 3) u, v in cells, heading of each, as it was reached first.
+        origin: (H, W, headings) how each was reached, see :func:`_make_moves`; 0: not.
+        poses: (N, 3) u, v in cells, heading of each, as it was reached first; used in
+            a circle, unless the flood is guided.
         state: number of poses; of those whose moves were made in order; the bucket
             before which all are empty.
         queue: indices of the poses whose moves are to be made, by ``toward``.
@@ -192,7 +196,7 @@ class _Flood(NamedTuple):
         reached = sparse_zeros(open_.shape, np.uint64, large_bytes=_LARGE_BYTES)
         shape = *open_.shape, HEADINGS
         origin = sparse_zeros(shape, np.uint8, large_bytes=_LARGE_BYTES)
-        poses = np.empty((_MOST_POSES, 3), np.float32)
+        poses = np.empty((_ROOM, 3), np.float32)
         poses[: len(begin)] = begin
         column, row, heading = poses[: len(begin)].astype(np.int64).T  # as rounded
         bits = np.uint64(1) << heading.astype(np.uint64)
@@ -201,7 +205,7 @@ class _Flood(NamedTuple):
             toward = np.empty((0, 0), np.int32)
         buckets = 1 << int(toward.max(initial=0) + 1).bit_length()
         queue = BucketQueue.empty(buckets, 0)
-        pool = np.empty(_MOST_POSES + 1, np.int64)
+        pool = np.empty(_ROOM + 1, np.int64)
         state = np.array([len(begin), 0, 0])
         flood = cls(reached, origin, poses, state, queue, pool, toward, shift, after)
         _queue_first(flood)
@@ -326,7 +330,7 @@ def _next(flood: Any) -> int:
         if state[_DONE] == state[_COUNT]:
             return -1
         state[_DONE] += 1
-        return int(state[_DONE] - 1)
+        return int((state[_DONE] - 1) % flood.poses.shape[0])
     while flood.queue.state[WAITING]:
         index = pop(flood.pool, flood.queue, state[_LOWEST])
         if index >= 0:
@@ -385,16 +389,17 @@ def _make_moves(open_: Masks, flood: Any, u: float, v: float, k: int) -> bool:
         if not middle & (bit | new):
             continue
         count = state[_COUNT]
-        if count == flood.poses.shape[0]:
+        if count - state[_DONE] >= flood.poses.shape[0] or count >= _MOST_POSES:
             return False
+        at = count % flood.poses.shape[0]
         rows = int(v) - row - math.floor(-flood.shift[k, m, 1]) + 1
         columns = int(u) - column - math.floor(-flood.shift[k, m, 0]) + 1
         code = 1 + m + _MOST_MOVES * (4 * rows + columns)
         flood.origin[row, column, heading] = code
         flood.reached[row, column] |= new
-        flood.poses[count, 0], flood.poses[count, 1] = x, y
-        flood.poses[count, 2] = heading
+        flood.poses[at, 0], flood.poses[at, 1] = x, y
+        flood.poses[at, 2] = heading
         state[_COUNT] = count + 1
         if flood.toward.size:
-            _queue(flood, count)
+            _queue(flood, at)
     return True

@@ -161,16 +161,20 @@ def test_a_small_region_around_the_goal_decides(drive: str) -> None:
     assert there.poses is not None
 
 
-def test_the_work_of_a_path_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Between two separate halves of a hall; within one a path needs few poses."""
-    monkeypatch.setattr(drive_flood, "_MOST_POSES", 10_000)
-    lethal, spec = np.zeros((400, 400), np.bool_), GridSpec(0.05, 400, 400)
-    lethal[200] = True
-    space = BodySpace(lethal, spec, BODY, Pose2(5.0, 5.0, 0.3), margin_m=0.0)
-    far, near = np.array([[300, 200]]), np.array([[120, 200]])
+def test_two_large_regions_are_proven_separate_beyond_a_guided_flood(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two halves of a hall of 0.6 million poses each; within one a path is short."""
+    monkeypatch.setattr(drive_flood, "_ROOM", 100_000)
+    lethal, spec = np.zeros((200, 200), np.bool_), GridSpec(0.05, 200, 200)
+    lethal[100] = True
+    space = BodySpace(lethal, spec, BODY, Pose2(5.0, 2.5, 0.3), margin_m=0.0)
+    far, near = np.array([[150, 100]]), np.array([[60, 120]])
     moves = DriveMoves("ackermann", 0.8)
-    assert space.drive_to(far, moves) == (None, False)
+    assert space.drive_to(far, moves) == (None, True)
     assert space.drive_to(near, moves).poses is not None
+    monkeypatch.setattr(drive_flood, "_ROOM", 1_000)
+    assert space.drive_to(far, moves) == (None, False)
 
 
 def test_the_last_heading_is_the_one_wanted() -> None:
