@@ -58,7 +58,7 @@ _NEVER = 1 << 60
 # Cells expanded before the first look at whether the goal is enclosed; then four times
 # as many. A look at a sixteenth as many cells takes 2 % of that time.
 _BEFORE_LOOK, _LOOK_SHARE, _LOOK_GROWTH = 1 << 17, 16, 4
-_NOWHERE = np.zeros((1, 1), np.int64)
+_NOWHERE = np.zeros((1, 1), np.int32)
 
 
 @PLANNERS.register("a_star")
@@ -153,7 +153,7 @@ def _item_of(cell: Cell) -> int:
 
 def _elsewhere(
     cheap: CheapTiles | None, goal: Cell, table: EdgeTable
-) -> tuple[NDArray[np.int64], int]:
+) -> tuple[NDArray[np.int32], int]:
     """Return ``away`` and ``excess``; a goal among cheap cells needs neither."""
     if cheap is None or cheap.distances()[goal[0] // TILE, goal[1] // TILE] == 0:
         return _NOWHERE, 0
@@ -180,7 +180,7 @@ class _Query(NamedTuple):
     base: np.int64
     records: NDArray[np.int64]
     best: NDArray[np.int64]
-    away: NDArray[np.int64]
+    away: NDArray[np.int32]
     excess: int
     steps: NDArray[np.int64]
     item_steps: NDArray[np.int64]

@@ -17,7 +17,7 @@ from navette.navigation.planning.traversal import DIAGONAL, STRAIGHT, EdgeTable
 
 TILE = 8
 """Edge of a tile, cells."""
-_FAR = 1 << 40
+_FAR = 1 << 27  # units: farther than any tile of a map is from another
 
 
 class CheapTiles:
@@ -33,7 +33,7 @@ class CheapTiles:
         self._floor = floor
         shape = tuple(-(-size // TILE) for size in cost.shape)
         self._cheap = np.zeros(shape, np.bool_)
-        self._distances: NDArray[np.int64] | None = None
+        self._distances: NDArray[np.int32] | None = None
         self.update(cost, window)
 
     def update(self, cost: NDArray[np.uint8], window: CellWindow) -> None:
@@ -41,14 +41,13 @@ class CheapTiles:
         if _mark_cheap(cost, np.uint8(self._floor), window, self._cheap):
             self._distances = None
 
-    def distances(self) -> NDArray[np.int64]:
+    def distances(self) -> NDArray[np.int32]:
         """Return (h, w) a lower bound on the octile distance to a cheap cell, units."""
         if self._distances is None:
-            away = np.pad(np.where(self._cheap, 0, _FAR), 1, constant_values=_FAR)
-            _spread(away)
-            # Cells of two tiles are nearer than the tiles by up to a tile each way.
-            inner = np.maximum(away[1:-1, 1:-1] - DIAGONAL, 0) * TILE
-            self._distances = np.ascontiguousarray(inner)
+            height, width = self._cheap.shape
+            away = np.full((height + 2, width + 2), _FAR, np.int32)
+            self._distances = np.empty((height, width), np.int32)
+            _measure(self._cheap, away, self._distances)
         return self._distances
 
     def excess(self, table: EdgeTable) -> int:
@@ -87,18 +86,32 @@ def _mark_cheap(cost: Any, floor: Any, window: Any, cheap: Any) -> bool:
 
 
 @kernel(allocates=False)
-def _spread(away: Any) -> None:
-    """Turn 0 and far into octile distances between tiles, units; a rim stays far."""
-    height, width = away.shape
-    for i in range(1, height - 1):
-        above, line = away[i - 1], away[i]
-        for j in range(1, width - 1):
-            straight = min(line[j - 1], above[j]) + STRAIGHT
-            diagonal = min(above[j - 1], above[j + 1]) + DIAGONAL
-            line[j] = min(line[j], straight, diagonal)
-    for i in range(height - 2, 0, -1):
-        below, line = away[i + 1], away[i]
-        for j in range(width - 2, 0, -1):
-            straight = min(line[j + 1], below[j]) + STRAIGHT
-            diagonal = min(below[j - 1], below[j + 1]) + DIAGONAL
-            line[j] = min(line[j], straight, diagonal)
+def _measure(cheap: Any, away: Any, distances: Any) -> None:
+    """Write the lower bounds on the distances of cells in tiles (h, w), units.
+
+    ``away``: (h + 2, w + 2) far; gets the octile distances between tiles.
+    """
+    height, width = cheap.shape
+    for i in range(height):
+        line = away[i + 1]
+        for j in range(width):
+            line[j + 1] = 0 if cheap[i, j] else line[j + 1]
+        _lower(line, away[i], range(1, width + 1))
+    for i in range(height - 1, -1, -1):
+        line, bound = away[i + 1], distances[i]
+        _lower(line, away[i + 2], range(width, 0, -1))
+        for j in range(width):
+            # Cells of two tiles are nearer than the tiles by up to a tile each way.
+            bound[j] = max(line[j + 1] - DIAGONAL, 0) * TILE
+
+
+@kernel(allocates=False)
+def _lower(line: Any, before: Any, columns: Any) -> None:
+    """Lower a row to the distances by way of the one before, and along it."""
+    for j in range(1, line.size - 1):  # vectorised, as the running minimum is not
+        diagonal = min(before[j - 1], before[j + 1]) + DIAGONAL
+        line[j] = min(line[j], before[j] + STRAIGHT, diagonal)
+    least = np.int32(_FAR)
+    for j in columns:
+        least = min(np.int32(least + STRAIGHT), line[j])
+        line[j] = least

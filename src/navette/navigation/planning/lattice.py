@@ -47,7 +47,7 @@ from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.traversal import STRAIGHT
 
 _UNSEEN_REACH_M = 10.0  # around the start, for distances to unseen cells
-_LARGE_BYTES = 1 << 20  # a search reaches few bins of a map
+_LARGE_BYTES = 1 << 20  # a search reaches few poses of its budget, and few bins
 
 
 @dataclass(frozen=True)
@@ -186,8 +186,8 @@ def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
     room = len(motions.moves) * max_expansions + 1
     bins = bins_high * bins_wide * motions.headings
     return Tree(
-        np.empty((room, 2), np.float64),
-        np.empty((room, 5), np.int32),
+        sparse_zeros((room, 2), np.float64, large_bytes=_LARGE_BYTES),
+        sparse_zeros((room, 5), np.int32, large_bytes=_LARGE_BYTES),
         sparse_zeros((bins,), np.int32, large_bytes=_LARGE_BYTES),
         bin_cells,
         bins_wide,

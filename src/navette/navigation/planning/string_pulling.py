@@ -36,7 +36,7 @@ def pull(
     """
     table = table or EdgeTable()
     factor = table.straight / STRAIGHT
-    cost, line = _checked(cost, points)
+    line = _checked(cost, points)
     for _ in range(passes):
         # Reversed each time: a forward pass leaves slack at the far side.
         fine = _cut(line)
@@ -54,7 +54,7 @@ def line_cost(
     Infinite if it meets a closed cell.
     """
     table = table or EdgeTable()
-    cost, line = _checked(cost, points)
+    line = _checked(cost, points)
     return float(_line_cost(cost, line, table.straight / STRAIGHT))
 
 
@@ -63,10 +63,8 @@ def centers(cells: NDArray[np.int64]) -> Points:
     return np.ascontiguousarray(cells[:, ::-1] + 0.5, np.float64)
 
 
-def _checked(
-    cost: NDArray[np.uint8], points: Points
-) -> tuple[NDArray[np.uint8], Points]:
-    """Return both as the kernels require them: a line of inner points stays inside."""
+def _checked(cost: NDArray[np.uint8], points: Points) -> Points:
+    """Return the line as the kernels require it: one of inner points stays inside."""
     line = np.ascontiguousarray(points, np.float64)
     height, width = cost.shape
     inside = (line >= 0).all() and (line < (width, height)).all()
@@ -75,7 +73,7 @@ def _checked(
             f"line of shape {line.shape} on a {cost.dtype} grid of {height} x {width} "
             f"cells: expected (N, 2) points u, v inside a uint8 grid"
         )
-    return np.ascontiguousarray(cost), line
+    return line
 
 
 @kernel(allocates=False)

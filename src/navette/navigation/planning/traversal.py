@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
+from navette.navigation.grids import sparse_zeros
 
 STRAIGHT = 10_000
 DIAGONAL = 14_142
@@ -120,13 +121,14 @@ def rimmed_costs(shape: tuple[int, ...], value: int) -> NDArray[np.uint8]:
     A search reads them without the copy that costs as much as a short search.
     """
     height, width = shape
-    rimmed = np.full((height + 2, width + 2), value, np.uint8)
+    rimmed = sparse_zeros((height + 2, width + 2), np.uint8)
+    rimmed[...] = value
     return _inside_rim(rimmed)
 
 
 def copy_costs(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return a copy of costs (H, W) with a lethal rim around them in memory."""
-    rimmed = np.empty((cost.shape[0] + 2, cost.shape[1] + 2), np.uint8)
+    rimmed = sparse_zeros((cost.shape[0] + 2, cost.shape[1] + 2), np.uint8)
     rimmed[1:-1, 1:-1] = cost
     return _inside_rim(rimmed)
 
