@@ -41,7 +41,7 @@ class DriveLimits(NamedTuple):
     max_side_speed: float
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def advance_differential(
     limits: DriveLimits,
     step_s: float,
@@ -63,7 +63,7 @@ def advance_differential(
         speeds[i] = forward[i]
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def advance_ackermann(
     limits: DriveLimits,
     step_s: float,
@@ -87,7 +87,7 @@ def advance_ackermann(
         turn_rate[i] = forward[i] * curvature[i]
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def advance_omni(
     limits: DriveLimits,
     step_s: float,
@@ -115,7 +115,7 @@ def advance_omni(
               limits.turn_acceleration * step_s)  # fmt: skip
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _ramp(
     wanted: Array32,
     state: Array32,
@@ -134,7 +134,7 @@ def _ramp(
         wanted[i] = state[i]
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _approach(wanted: Array32, state: Array32, most: float, change: float) -> None:
     """Change a value within ± ``most`` by at most ``change``."""
     for i in range(state.size):

@@ -65,7 +65,7 @@ def counts_as_static(
     return (off_m <= 0.0) | ~coming & ((off_m <= stop_m + _NEAR_M) | ~receding)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def add_moving_costs(
     commands: Array32,
     yaw: float,
@@ -117,7 +117,7 @@ def add_moving_costs(
             free[i] *= F(0.0) if hit else F(1.0)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _lower_to_disc(
     pose: Array32, x: float, y: float, reach: float, before: Array32, least: Array32
 ) -> None:

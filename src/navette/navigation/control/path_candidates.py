@@ -24,7 +24,7 @@ _LOOKAHEAD_M = 0.25
 _HEADING_GAIN = 2.0  # turn rate per heading error, 1/s
 
 
-@kernel(nogil=True)
+@kernel
 def fill_path_candidates(
     commands: Array32,
     yaw: float,
@@ -87,7 +87,7 @@ def fill_path_candidates(
             heading += step_s * turn
 
 
-@kernel(nogil=True)
+@kernel
 def _nearest(
     poses: Array32, last: int, first: int, x: float, y: float, heading: float
 ) -> int:
@@ -105,6 +105,6 @@ def _nearest(
     return best
 
 
-@kernel(nogil=True)
+@kernel
 def _clipped(value: Any, most: Any) -> Any:
     return min(most, max(-most, value))

@@ -144,7 +144,7 @@ class RolloutBody(NamedTuple):
         return cls(np.ascontiguousarray(points, np.float32), reach)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def rollout_costs(
     commands: Array32,
     start: Array,
@@ -181,7 +181,7 @@ def rollout_costs(
                      field, body, weights, costs[first:last])  # fmt: skip
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _lack_on_path(
     path: PathTable, field: LocalField, body: RolloutBody, enough_m: float
 ) -> Array32:
@@ -199,7 +199,7 @@ def _lack_on_path(
     return lack
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _chunk_costs(
     commands: Array32,
     first: int,
@@ -263,7 +263,7 @@ def _largest(values: Array32) -> float:
     return largest
 
 
-@kernel(allocates=False, nogil=True, fastmath=True)
+@kernel(allocates=False, fastmath=True)
 def _effort_costs(
     before: Array32, after: Array32, weight: float, costs: Array32
 ) -> None:
@@ -272,7 +272,7 @@ def _effort_costs(
         costs[i] += weight * change * change
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def move(pose: Array32, speed: Array32, step_s: float) -> None:
     """Drive a step, with the heading at half of it.
 
@@ -292,7 +292,7 @@ def move(pose: Array32, speed: Array32, step_s: float) -> None:
         cos[i], sin[i] = c * ch - s * sh, s * ch + c * sh
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _near_obstacles(
     pose: Array32,
     field: LocalField,
@@ -328,7 +328,7 @@ def _near_obstacles(
     return found
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _cells_of(
     shape: tuple[int, int],
     x: Array32,
@@ -347,7 +347,7 @@ def _cells_of(
         cells[i] = row * stride + column
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _clearances(
     field: LocalField,
     body: RolloutBody,
@@ -378,7 +378,7 @@ def _clearances(
             _lower(flat, cells, less, near[4])
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _lower_between(field: Array32, point: Array32, less: float, near: Array32) -> None:
     """Lower the clearances to that of a body point, between four cell centres."""
     F, I = np.float32, np.int32
@@ -399,7 +399,7 @@ def _lower_between(field: Array32, point: Array32, less: float, near: Array32) -
         least[i] = min(least[i], below + (above - below) * fv - less)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _cells_of_point(
     shape: tuple[int, int], point: Array32, near: Array32, cells: Indices
 ) -> None:
@@ -416,7 +416,7 @@ def _cells_of_point(
         cells[i] = row * stride + column
 
 
-@kernel(allocates=False, nogil=True, fastmath=True)
+@kernel(allocates=False, fastmath=True)
 def _lower(flat: Array32, cells: Indices, less: float, least: Array32) -> None:
     """Lower the clearances to that of a body point, in the cells."""
     for i in range(cells.size):
@@ -424,7 +424,7 @@ def _lower(flat: Array32, cells: Indices, less: float, least: Array32) -> None:
         least[i] = min(least[i], there)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _clearance_costs(
     clearance: Array32,
     count: int,
@@ -456,7 +456,7 @@ def _clearance_costs(
         costs[sample] += per_lack * counted + collides
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _nearest(path: PathTable, pose: Array32, at: Indices, apart: Array32) -> None:
     """Advance every sample to the nearest of the poses that it can have reached.
 
@@ -493,7 +493,7 @@ def _squared_distance(
     return squared
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def _path_costs(
     pose: Array32,
     forward: Array32,
@@ -518,7 +518,7 @@ def _path_costs(
         costs[i] += (cost + weights.reverse * against) * step_s
 
 
-@kernel(allocates=False, nogil=True, fastmath=True)
+@kernel(allocates=False, fastmath=True)
 def _delay_costs(
     path: PathTable, at: Indices, weight: float, steps: int, costs: Array32
 ) -> None:
@@ -534,7 +534,7 @@ def _delay_costs(
         costs[i] += share * (end - measure[np.uint32(at[i])])
 
 
-@kernel(allocates=False, nogil=True, fastmath=True)
+@kernel(allocates=False, fastmath=True)
 def _remaining_costs(
     pose: Array32, path: PathTable, at: Indices, weight: float, costs: Array32
 ) -> None:

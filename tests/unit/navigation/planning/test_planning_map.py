@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import NO_CELLS, UNKNOWN, CellWindow, GridSpec
-from navette.navigation.planning import NewMap, PlannerParams
+from navette.navigation.planning import NewMap, PlannerParams, prepared_map
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.planning_grid import (
     BodyShape,
@@ -132,3 +132,22 @@ def test_copies_keep_their_map_when_another_detaches() -> None:
     planner.set_map(NewMap(np.zeros(SPEC.shape, np.int8), SPEC))
     np.testing.assert_array_equal(kept.grid().cost, before)
     assert planner.grid().cost.max() == 0
+
+
+@pytest.mark.parametrize("most", [0, 10**9])
+def test_a_large_change_is_prepared_with_the_next_plan(
+    monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    monkeypatch.setattr(prepared_map, "_MOST_UPDATED", most)
+    rng = np.random.default_rng(4)
+    planner = Planner(PARAMS)
+    planner.set_map(NewMap(random_map(rng), SPEC))
+    before = planner.grid()
+    walled = np.zeros(SPEC.shape, np.int8)
+    walled[:, 40:42] = 100
+    planner.set_map(NewMap(walled, SPEC))
+    assert planner.map.take_cost_fall()
+    fresh = planning_grid(walled, SPEC, BODY, PARAMS)
+    is_updated_already = bool((before.cost == fresh.cost).all())
+    assert is_updated_already == (most > 0)
+    np.testing.assert_array_equal(planner.grid().cost, fresh.cost)
