@@ -478,7 +478,7 @@ class MapMemoryNode(StageNode):
         self._gate.reset()
         frame_id, now_ns = self.params.map_frame, self._now_ns()
         known = grid_to_message(cells, spec, frame_id, now_ns)
-        self.publish(topics.STATIC_MAP.name, known)
+        self.hand_over(topics.STATIC_MAP.name, known)
         self._publish_map(self._now_ns())
 
     def _load_file(self) -> None:

@@ -334,7 +334,7 @@ class SlamNode(StageNode):
             PoseStamped(header=header(stamp_ns, frame), pose=pose_message(pose))
             for stamp_ns, pose in trajectory
         ]
-        self.publish(topics.TRAJECTORY.name, path)
+        self.hand_over(topics.TRAJECTORY.name, path)
 
     def _publish_transform(self, stamp_ns: int, map_T_odom: Pose2) -> None:
         params = self.params

@@ -333,7 +333,7 @@ class AmclNode(StageNode):
         if self.has_listeners(topics.PARTICLES.name):
             particles = found.particles
             cloud = cloud_message(particles.poses, particles.weights, header)
-            self.publish(topics.PARTICLES.name, cloud)
+            self.hand_over(topics.PARTICLES.name, cloud)
 
     def _report(self, state: LocalizationState, **details: Any) -> None:
         if state is not self._state:
