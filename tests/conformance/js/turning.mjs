@@ -14,6 +14,13 @@ try {
   await page.goto(url);
   const isPlaced = () => globalThis.navette?.scene.displays.all.some((display) => display.type === "sensor_msgs/msg/LaserScan" && display.status().level === "ok") && navette.transforms.frames.includes("map");
   await page.waitForFunction(isPlaced, null, { timeout: 60_000 });
+  // A scan from before the page's first transforms is drawn at these: wait for a later one.
+  const stamps = await page.evaluate(() => ["odom", "base_link"].map((frame) => String(navette.transforms.links.get(frame).stampNs)));
+  const isCovered = (firsts) => {
+    const { stamp } = navette.scene.displays.all.find((display) => display.type === "sensor_msgs/msg/LaserScan").message.header;
+    return firsts.every((first) => BigInt(stamp.sec) * 1_000_000_000n + BigInt(stamp.nanosec) >= BigInt(first));
+  };
+  await page.waitForFunction(isCovered, stamps, { timeout: 60_000 });
   await page.evaluate(() => navette.scene.displays.all.forEach((display) => { if (display.type !== "sensor_msgs/msg/LaserScan") navette.scene.displays.change(display, { isVisible: false }); }));
   await page.evaluate(() => navette.scene.chooseFrame("map"));
   const distances = await page.evaluate(async ([halfX, halfY]) => {
@@ -24,6 +31,8 @@ try {
     const [laser] = new Uint32Array(probe.getImageData(0, 0, 1, 1).data.buffer);
     const worst = [];
     let before = 0;
+    const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
+    await frame().then(frame); // until that scan is drawn
     while (worst.length < 60) {
       await new Promise((resolve) => setTimeout(resolve, 40));
       const { canvas } = scene;
