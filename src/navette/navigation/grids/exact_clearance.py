@@ -18,7 +18,13 @@ from navette.files.kernels import kernel
 from navette.geometry import Footprint
 from navette.navigation.grids.clearance import HALF_DIAGONAL
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
-from navette.navigation.grids.sub_cells import SUB_CELLS, Masks
+from navette.navigation.grids.sub_cells import (
+    NO_POINTS,
+    SUB_CELLS,
+    CellMarks,
+    Points,
+    mask_at,
+)
 
 Array = NDArray[np.float64]
 
@@ -36,15 +42,12 @@ class ObstacleGrid(NamedTuple):
     Attributes:
         lethal: (H, W) uint8, 1 = lethal.
         frame: the grid's frame.
-        masks: (H, W) points within the cells, or empty.
+        marks: the points within the cells.
     """
 
     lethal: NDArray[np.uint8]
     frame: GridFrame
-    masks: Masks
-
-
-_NO_MASKS = np.empty((0, 0), np.uint64)
+    marks: CellMarks
 
 
 def make_outline(footprint: Footprint) -> Outline:
@@ -54,11 +57,17 @@ def make_outline(footprint: Footprint) -> Outline:
 
 
 def make_obstacles(
-    lethal: NDArray[np.uint8], spec: GridSpec, masks: Masks | None = None
+    lethal: NDArray[np.uint8], spec: GridSpec, points: Points = NO_POINTS
 ) -> ObstacleGrid:
-    """Return the lethal cells (H, W) with their frame and the points in them."""
-    within = _NO_MASKS if masks is None else np.ascontiguousarray(masks)
-    return ObstacleGrid(np.ascontiguousarray(lethal), grid_frame(spec), within)
+    """Return the lethal cells (H, W) of a grid.
+
+    Args:
+        lethal: (H, W) uint8, 1 = lethal.
+        spec: their geometry.
+        points: (N, 2) in the grid's frame, m, where beams ended.
+    """
+    cells, marks = np.ascontiguousarray(lethal), CellMarks.of(spec, points)
+    return ObstacleGrid(cells, grid_frame(spec), marks)
 
 
 def exact_clearances(
@@ -132,7 +141,6 @@ def exact_clearance(
     """:func:`exact_clearances` at one pose, for other kernels."""
     frame = obstacles.frame
     size = frame.resolution
-    has_masks = obstacles.masks.size > 0
     dx, dy = x - frame.x, y - frame.y
     u = (frame.cos * dx + frame.sin * dy) / size
     v = (frame.cos * dy - frame.sin * dx) / size
@@ -160,10 +168,12 @@ def exact_clearance(
                 continue
             bx, by = cos * gx + sin * gy, cos * gy - sin * gx
             distance = signed_distance(outline.vertices, bx, by)
-            if not has_masks or obstacles.masks[row, column] == 0:
+            if distance - HALF_DIAGONAL * size >= best:
+                continue
+            mask = mask_at(obstacles.marks, row, column)
+            if mask == 0:
                 best = min(best, distance - 0.5 * size)
-            elif distance - HALF_DIAGONAL * size < best:
-                mask = obstacles.masks[row, column]
+            else:
                 best = min(best, _of_points(outline, mask, size, bx, by, cos, sin))
     return best
 

@@ -149,14 +149,21 @@ def _mark(masks: Any, uv: Any) -> Any:
     return cells
 
 
-@kernel
-def _slot(cells: Any, row: int, column: int) -> Any:
+@kernel(allocates=False)
+def _slot(cells: Any, row: int, column: int) -> int:
     """Return where a cell is in a table of :class:`CellMarks`, or belongs."""
     cell = row * (1 << 32) + column
     at = (row * 73856093 ^ column * 19349663) & (cells.size - 1)
     while cells[at] != cell and cells[at] != _NO_CELL:
         at = (at + 1) & (cells.size - 1)
-    return at
+    return int(at)
+
+
+@kernel(allocates=False)
+def mask_at(marks: Any, row: int, column: int) -> np.uint64:
+    """Return the mask of a cell in a table of :class:`CellMarks`, or 0."""
+    mask: np.uint64 = marks.masks[_slot(marks.cells, row, column)]
+    return mask
 
 
 @kernel
@@ -186,7 +193,7 @@ def _marked_or_circle(marks: Any, centers: Any, frame: Any, circle: Any) -> Any:
     first = np.zeros(centers.shape[0] + 1, np.int64)
     for k in range(centers.shape[0]):
         u, v = _in_cells(centers, k, frame)
-        masks[k] = marks.masks[_slot(marks.cells, math.floor(v), math.floor(u))]
+        masks[k] = mask_at(marks, math.floor(v), math.floor(u))
         first[k + 1] = first[k] + (_bits(masks[k]) or circle.shape[0])
     points = np.empty((first[-1], 2))
     for k in range(centers.shape[0]):

@@ -23,7 +23,6 @@ from navette.navigation.grids import (
     copied,
     level_type,
     make_obstacles,
-    mark_points,
     sparse_zeros,
 )
 from navette.navigation.grids.distance_levels import all_parts
@@ -139,9 +138,7 @@ class PlanningGrid:
     @cached_property
     def exact_obstacles(self) -> ObstacleGrid:
         """The lethal cells with the points in them, for exact clearances."""
-        masks = sparse_zeros(self.spec.shape, np.uint64)
-        mark_points(masks, self.spec, self.hits)
-        return make_obstacles(self.obstacles, self.spec, masks)
+        return make_obstacles(self.obstacles, self.spec, self.hits)
 
     @property
     def outside_m(self) -> float:

@@ -27,7 +27,11 @@ def has_heading(msg: Pose) -> bool:
 
 def poses_of(msg: Path) -> Poses:
     """Return poses (N, 3) x, y, yaw of a path, in the path's frame."""
-    rows = [pose_of(stamped.pose) for stamped in msg.poses]
+    rows = []
+    for stamped in msg.poses:
+        pose = stamped.pose
+        position, q = pose.position, pose.orientation
+        rows.append((position.x, position.y, yaw_of((q.x, q.y, q.z, q.w))))
     return np.array(rows, np.float64).reshape(-1, 3)
 
 
@@ -43,15 +47,13 @@ def pose_message(pose: Pose2) -> Pose:
 def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
     """Return poses (N, 3) x, y, yaw as a message with z = 0."""
     header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=frame_id)
-    blank, stamped = PoseStamped(), []
+    blank, stamped = Pose(), []
     for x, y, yaw in poses.tolist():
-        # Copies of one message: half the time of constructing each.
-        here = copy_message(blank)
-        here.header = header
-        position, q = here.pose.position, here.pose.orientation
+        pose = copy_message(blank)  # half the time of constructing each
+        position, q = pose.position, pose.orientation
         position.x, position.y = x, y
         q.x, q.y, q.z, q.w = quaternion_from_yaw(yaw)
-        stamped.append(here)
+        stamped.append(PoseStamped(header=header, pose=pose))
     return Path(header=header, poses=stamped)
 
 

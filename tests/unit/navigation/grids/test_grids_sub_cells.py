@@ -69,12 +69,12 @@ def test_clearance_is_that_of_the_points() -> None:
     outline = make_outline(Footprint(((0.2, 0.15), (-0.2, 0.15), (-0.2, -0.15),
                                       (0.2, -0.15))))  # fmt: skip
     points = some_points(30)
-    masks, cells = marked(points)
+    _, cells = marked(points)
     lethal = np.zeros(SPEC.shape, np.uint8)
     lethal[tuple(cells.T)] = 1
     rng = np.random.default_rng(2)
     poses = np.column_stack([some_points(50), rng.uniform(-3, 3, 50)])
-    exact = exact_clearances(make_obstacles(lethal, SPEC, masks), outline, poses, 1.0)
+    exact = exact_clearances(make_obstacles(lethal, SPEC, points), outline, poses, 1.0)
     for pose, found in zip(poses, exact, strict=True):
         x, y = np.abs(Pose2(*pose).inverse().apply(points)).T
         outside = np.hypot(np.maximum(x - 0.2, 0), np.maximum(y - 0.15, 0))
