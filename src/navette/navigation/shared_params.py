@@ -81,7 +81,9 @@ class MotionParams(BodyParams):
     """What the stages that command motion have in common."""
 
     rate_hz: float = param(20.0, "commands per second", at_least=10.0, at_most=1000.0)
-    reaction_s: float = param(0.2, "delay from command to motion", at_least=0.0)
+    reaction_s: float = param(
+        0.2, "delay from command to motion", at_least=0.0, at_most=5.0
+    )
     stall_time_s: float = param(
         0.3,
         "no motion for this long, though commanded, stops the robot; 0: never",
