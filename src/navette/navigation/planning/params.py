@@ -20,13 +20,13 @@ class PlannerParams(BendParams):
     )
 
     clearance_margin_m: float = param(
-        0.15, "clearance between body and obstacles", at_least=0.0, at_most=10.0
+        0.15, "clearance between body and obstacles", at_least=0.0, at_most=2.0
     )
     tight_margin_m: float = param(
         0.03,
         "clearance where no path has clearance_margin_m",
         at_least=0.0,
-        at_most=10.0,
+        at_most=2.0,
     )
     comfort_m: float = param(
         0.3,
