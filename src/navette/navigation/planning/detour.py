@@ -169,6 +169,8 @@ class DetourPlanner:
         length_m = self.params.min_turning_radius_m * abs(off)
         for signed_m in (length_m, -length_m) if off else ():
             beginning = path_shape.bend(start, off, signed_m)
+            if self.grid.cell_of(*beginning[-1, :2].tolist()) is None:
+                continue  # the search cannot begin outside of the map
             if check_path(beginning, self.grid, self.body).fits:
                 before = beginning
                 break

@@ -20,6 +20,8 @@ Poses = NDArray[np.float64]
 Points = NDArray[np.float64]
 
 TURN_STEP = 0.2
+# Largest distance between the poses of a bend: a check of them misses no obstacle.
+_BEND_STEP_M = 0.2
 """Largest change of heading between poses of a turn in place, radians."""
 _SAME_PLACE = 1e-6
 
@@ -73,7 +75,8 @@ def bend(start: Pose2, turn: float, length_m: float) -> Poses:
 
     A negative length is driven in reverse.
     """
-    count = max(1, math.ceil(abs(turn) / TURN_STEP))
+    steps = max(abs(turn) / TURN_STEP, abs(length_m) / _BEND_STEP_M)
+    count = max(1, math.ceil(steps))
     share = np.arange(count + 1) / count
     half = 0.5 * turn * share
     chord = length_m * share * np.sinc(half / np.pi)

@@ -15,22 +15,22 @@ from navette.navigation.planning import (
     Planner,
     PlannerParams,
 )
-from navette.navigation.planning.detour import DetourPlanner
+from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path
-from navette.navigation.planning.path_shape import lengths
+from navette.navigation.planning.path_shape import bend, lengths
 from navette.navigation.planning.route import GridRouter
 
 FOOTPRINT = (-0.25, -0.2, 0.25, -0.2, 0.25, 0.2, -0.25, 0.2)
 PARAMS = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
 
 
-def detour_planner(*, centres: bool) -> DetourPlanner:
-    planner = Planner(PARAMS)
+def detour_planner(*, centres: bool, params: PlannerParams = PARAMS) -> DetourPlanner:
+    planner = Planner(params)
     occupancy, spec = empty_map(6, 6)
     planner.set_map(NewMap(occupancy, spec))
-    router = GridRouter(PARAMS, centres=centres)
+    router = GridRouter(params, centres=centres)
     unseen = np.zeros(spec.shape, np.uint8)
-    return DetourPlanner(planner.grid(), planner.body, PARAMS, router, unseen)
+    return DetourPlanner(planner.grid(), planner.body, params, router, unseen)
 
 
 @pytest.mark.parametrize("yaw", [-0.14, -0.05, 0.03, 0.1, 1.7])
@@ -46,6 +46,21 @@ def test_a_passage_is_among_the_headings_of_the_search(yaw: float) -> None:
     np.testing.assert_array_equal(
         aligned[:, :2], np.tile(start[0, :2], (len(aligned), 1))
     )
+
+
+@pytest.mark.parametrize(("radius_m", "fits"), [(0.8, True), (20.0, False)])
+def test_a_car_bends_to_the_heading_of_a_passage_within_the_map(
+    radius_m: float, fits: bool
+) -> None:
+    params = replace(PARAMS, drive="ackermann", min_turning_radius_m=radius_m)
+    detour = detour_planner(centres=True, params=params)
+    route = np.column_stack([np.linspace(1, 5, 40), np.full(40, 3.0), np.zeros(40)])
+    found = detour.plan(Pose2(1.0, 3.0, 0.1), Target(5.0, 3.0, None, 0.5), route)
+    assert (found.poses is not None) == fits
+
+
+def test_the_poses_of_a_wide_bend_are_close_to_each_other() -> None:
+    assert lengths(bend(Pose2(0.0, 0.0, 0.0), 0.3, 6.0)).max() <= 0.2
 
 
 def test_where_there_is_room_the_search_begins_with_the_robots_heading() -> None:
