@@ -48,6 +48,7 @@ from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import (
     grid_from_message,
     grid_to_message,
+    update_grid_message,
     window_from_message,
     window_to_message,
 )
@@ -171,6 +172,7 @@ __all__ = [
     "cell_points",
     "point_radius",
     "grid_to_message",
+    "update_grid_message",
     "window_from_message",
     "window_to_message",
     "grid_from_message",

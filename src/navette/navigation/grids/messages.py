@@ -39,6 +39,28 @@ def grid_to_message(
     return OccupancyGrid(header=header(stamp_ns, frame_id), info=info, data=data)
 
 
+def update_grid_message(
+    msg: OccupancyGrid,
+    cells: Cells,
+    window: CellWindow,
+    frame_id: str,
+    stamp_ns: int,
+) -> None:
+    """Make a message of ``cells`` (H, W) from one that differs in a window only."""
+    present = np.asarray(msg.data).reshape(cells.shape)
+    present[window.slices] = cells[window.slices]
+    msg.header = header(stamp_ns, frame_id)
+    # A new one: somebody may still have the one before.
+    before = msg.info
+    msg.info = MapMetaData(
+        map_load_time=time_message(stamp_ns),
+        resolution=before.resolution,
+        width=before.width,
+        height=before.height,
+        origin=before.origin,
+    )
+
+
 def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
     """Return the cells (H, W), a view of the message's data, and their geometry.
 

@@ -51,6 +51,7 @@ from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
 from navette.navigation.mapping.rebuilding import RebuildingMemory
 from navette.navigation.mapping.servers.map_services import MapServices
+from navette.navigation.mapping.whole_maps import WholeMaps
 from navette.navigation.servers.costmap_services import CostmapServices
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
@@ -144,6 +145,7 @@ class MapMemoryNode(StageNode):
         super().__init__(node_name, **kwargs)
         self._has_nav2_reader = False
         self._is_starting = True
+        self._whole_maps = WholeMaps()
         self._map_ns = -1  # stamp of the newest map
         self._is_outside = False  # the robot at the newest costmap
         self._tracker = self._new_tracker()
@@ -396,6 +398,7 @@ class MapMemoryNode(StageNode):
         points = points_to_message(memory.hit_points(), frame_id, stamp_ns)
         self.hand_over(topics.MAP_POINTS.name, points)
         window = memory.take_change()
+        self._whole_maps.note_change(window)
         if window is None or stamp_ns < self._map_ns:
             window = NO_CELLS
         self._map_ns, self._published = stamp_ns, None
@@ -457,9 +460,8 @@ class MapMemoryNode(StageNode):
         """Return the map as it was last published, or updated."""
         if self._published is None:
             memory, frame_id = self._memory, self.params.map_frame
-            cells = memory.cells
-            self._published = grid_to_message(
-                cells, memory.spec, frame_id, self._map_ns
+            self._published = self._whole_maps.message(
+                memory.cells, memory.spec, frame_id, self._map_ns
             )
         return self._published
 
