@@ -7,6 +7,7 @@ import numpy as np
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
 from navette.geometry.messages import header, time_message
+from navette.msgs import copy_message
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion
 from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
@@ -50,15 +51,9 @@ def update_grid_message(
     present = np.asarray(msg.data).reshape(cells.shape)
     present[window.slices] = cells[window.slices]
     msg.header = header(stamp_ns, frame_id)
-    # A new one: somebody may still have the one before.
-    before = msg.info
-    msg.info = MapMetaData(
-        map_load_time=time_message(stamp_ns),
-        resolution=before.resolution,
-        width=before.width,
-        height=before.height,
-        origin=before.origin,
-    )
+    info = copy_message(msg.info)  # a reader may still have that of the last message
+    info.map_load_time = time_message(stamp_ns)
+    msg.info = info
 
 
 def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:

@@ -60,10 +60,13 @@ class CellMarks(NamedTuple):
 
     @classmethod
     def of(cls, spec: GridSpec, points: Points) -> "CellMarks":
-        """Args: geometry of the grid; points (N, 2) in its frame, m."""
+        """Args: geometry of the grid; points (N, 2) in its frame, m.
+
+        Points outside of the grid are ignored.
+        """
         size = 1 << (2 * len(points)).bit_length()
         marks = cls(np.full(size, _NO_CELL), np.zeros(size, np.uint64))
-        _add_marks(marks, points, grid_frame(spec))
+        _add_marks(marks, points, grid_frame(spec), spec.shape)
         return marks
 
     def points_by_cell(
@@ -167,9 +170,12 @@ def mask_at(marks: Any, row: int, column: int) -> np.uint64:
 
 
 @kernel
-def _add_marks(marks: Any, points: Any, frame: Any) -> None:
+def _add_marks(marks: Any, points: Any, frame: Any, shape: tuple[int, int]) -> None:
+    height, width = shape
     for k in range(points.shape[0]):
         u, v = _in_cells(points, k, frame)
+        if not (0.0 <= u < width and 0.0 <= v < height):
+            continue
         row, column = math.floor(v), math.floor(u)
         at = _slot(marks.cells, row, column)
         part_u, part_v = int((u - column) * SUB_CELLS), int((v - row) * SUB_CELLS)

@@ -13,7 +13,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.grids.spec import Cells
 
-# One that readers have, and one before it, which they leave for the newer one.
+# The newest, the one before it, which a slow reader may still have, and one to change.
 _MOST_KEPT = 3
 # References to an object that only its owner has: the owner's, and the argument.
 _UNUSED = 2

@@ -20,9 +20,9 @@ Poses = NDArray[np.float64]
 Points = NDArray[np.float64]
 
 TURN_STEP = 0.2
+"""Largest change of heading between poses of a turn in place, radians."""
 # Largest distance between the poses of a bend: a check of them misses no obstacle.
 _BEND_STEP_M = 0.2
-"""Largest change of heading between poses of a turn in place, radians."""
 _SAME_PLACE = 1e-6
 
 

@@ -1,6 +1,7 @@
 """Points within lethal cells, and clearances to them."""
 
 import numpy as np
+import pytest
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
@@ -17,6 +18,7 @@ from navette.navigation.grids import (
     point_radius,
     points_to_message,
 )
+from navette.navigation.grids.sub_cells import CellMarks, mask_at
 
 SPEC = GridSpec(0.1, 60, 40, Pose2(-1.0, -2.0, 0.3))
 
@@ -96,3 +98,19 @@ def test_clouds_are_found_by_stamp() -> None:
     assert found is not None
     np.testing.assert_array_equal(found, points)
     assert clouds.at(1) is None
+
+
+@pytest.mark.parametrize("far_m", [1e30, -1e30, 3.2e8, 5.0])
+def test_points_far_outside_do_not_mark_the_cells_of_the_grid(far_m: float) -> None:
+    spec = GridSpec(0.1, 60, 40, Pose2(0.0, 0.0, 0.0))
+    marks = CellMarks.of(spec, np.array([(1.05, 2.0 * 2**32 * 0.1), (2.05, far_m)]))
+    outline = make_outline(Footprint(((0.2, 0.15), (-0.2, 0.15), (-0.2, -0.15),
+                                      (0.2, -0.15))))  # fmt: skip
+    for row, column in ((0, 10), (0, 20)):
+        assert mask_at(marks, row, column) == 0
+    lethal = np.zeros(spec.shape, np.uint8)
+    lethal[0, 20] = 1
+    poses = np.array([(2.05, 0.5, 0.3)])
+    far = make_obstacles(lethal, spec, np.array([(2.05, far_m)]))
+    expected = exact_clearances(make_obstacles(lethal, spec), outline, poses, 1.0)
+    assert exact_clearances(far, outline, poses, 1.0) == expected
