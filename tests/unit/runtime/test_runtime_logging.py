@@ -158,7 +158,13 @@ def on_a_terminal(record: LogRecord, columns: int) -> list[str]:
         size = struct.pack("4H", 24, columns, 0, 0)
         fcntl.ioctl(stream.fileno(), termios.TIOCSWINSZ, size)
         ConsoleSink(stream)(record)
-        return received.read(4096).decode().splitlines()
+        stream.write("\0")
+        stream.flush()
+        # The terminal passes on what it gets in pieces.
+        output = b""
+        while not output.endswith(b"\0"):
+            output += received.read(4096)
+        return output[:-1].decode().splitlines()
 
 
 LONG = LogRecord(
