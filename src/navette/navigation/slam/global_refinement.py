@@ -80,26 +80,23 @@ def _refine_jointly(
 
 def overlapping_pairs(graph: ScanGraph) -> list[Pair]:
     """Return pairs (i, j), i < j, of key scans that look at the same place."""
-    from scipy.spatial import cKDTree
-
     centers = graph.view_centers()
-    tree = cKDTree(centers)
-    pairs: set[Pair] = set()
-    for j, near in enumerate(tree.query_ball_point(centers, _REACH_M)):
-        earlier = np.array(sorted(i for i in near if i < j), np.int64)
+    pairs: list[Pair] = []
+    for j, center in enumerate(centers):
+        away = np.hypot(*(centers[:j] - center).T)
+        earlier = np.flatnonzero(away <= _REACH_M)
         if len(earlier) > _PARTNERS:
-            earlier = _spread_out(earlier, j, centers)
-        pairs.update((int(i), j) for i in earlier)
+            earlier = _spread_out(earlier, j, away)
+        pairs.extend((i, j) for i in earlier.tolist())
     return sorted(pairs)
 
 
 def _spread_out(
-    earlier: NDArray[np.int64], j: int, centers: Matrix
+    earlier: NDArray[np.int64], j: int, away: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Choose the partners of a scan: the last ones, and others from near to far."""
     recent, old = earlier[earlier >= j - _BEFORE], earlier[earlier < j - _BEFORE]
-    away = np.linalg.norm(centers[old] - centers[j], axis=1)
-    old = old[np.argsort(away, kind="stable")]
+    old = old[np.argsort(away[old], kind="stable")]
     steps = np.linspace(0, len(old) - 1, _PARTNERS - len(recent)).astype(int)
     return np.concatenate([recent, old[np.unique(steps)]])
 

@@ -5,12 +5,14 @@ Gauss-Newton with Levenberg's damping on the sparse normal equations (Lu and Mil
 carry a Cauchy weight.
 """
 
-from typing import Any, NamedTuple
+import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
+from navette.navigation.slam.block_cholesky import BlockCholesky
 
 Matrix = NDArray[np.float64]
 
@@ -56,12 +58,11 @@ def optimise(
     cost = system.cost(poses)
     damping = 0.0
     for _ in range(steps):
-        matrix, right = system.equations(poses)
-        step = _solve(matrix, right, damping).reshape(-1, 3)
-        tried = poses.copy()
-        tried[1:] += step
-        tried[:, 2] = np.remainder(tried[:, 2] + np.pi, 2 * np.pi) - np.pi
-        new_cost = system.cost(tried)
+        step, new_cost, tried = system.step(poses, damping), math.inf, poses.copy()
+        if step is not None:
+            tried[1:] += step
+            tried[:, 2] = np.remainder(tried[:, 2] + np.pi, 2 * np.pi) - np.pi
+            new_cost = system.cost(tried)
         if new_cost > cost * (1 + 1e-12) + 1e-12:
             damping = max(1e-4, 10.0 * damping)
             if damping > _LARGEST_DAMPING:
@@ -97,25 +98,15 @@ class _System:
     """Normal equations of a set of edges."""
 
     def __init__(self, nodes: int, edges: list[GraphEdge]) -> None:
-        self._size = 3 * (nodes - 1)
         self._i = np.array([each.source for each in edges])
         self._j = np.array([each.target for each in edges])
         self._z = np.array([each.source_T_target for each in edges])
         self._omega = np.array([each.information for each in edges])
         self._robust = np.array([each.is_robust for each in edges])
-        cells = np.arange(3)
-        rows, columns = [], []
-        for a, b in ((self._i, self._i), (self._i, self._j), (self._j, self._i),
-                     (self._j, self._j)):  # fmt: skip
-            shape = (len(edges), 3, 3)
-            row = (3 * a - 3)[:, None, None] + cells[None, :, None]
-            column = (3 * b - 3)[:, None, None] + cells[None, None, :]
-            rows.append(np.broadcast_to(row, shape))
-            columns.append(np.broadcast_to(column, shape))
-        self._rows = np.concatenate([each.ravel() for each in rows])
-        self._columns = np.concatenate([each.ravel() for each in columns])
         # The first node is fixed: its rows and columns are omitted.
-        self._kept = (self._rows >= 0) & (self._columns >= 0)
+        self._free = (self._i > 0) & (self._j > 0)
+        pairs = np.column_stack([self._i, self._j])[self._free] - 1
+        self._solver = BlockCholesky(nodes - 1, pairs)
 
     def cost(self, poses: Matrix) -> float:
         error, _ = self._errors(poses)
@@ -123,10 +114,8 @@ class _System:
         robust = _ROBUST * np.log1p(squared / _ROBUST)
         return float(np.where(self._robust, robust, squared).sum())
 
-    def equations(self, poses: Matrix) -> tuple[Any, Matrix]:
-        """Return the matrix (sparse) and the right side of a Gauss-Newton step."""
-        from scipy.sparse import csc_matrix
-
+    def step(self, poses: Matrix, damping: float) -> Matrix | None:
+        """Return the changes (N - 1, 3) of a Gauss-Newton step; None: damp it more."""
         error, local = self._errors(poses)
         squared = np.einsum("ei,eij,ej->e", error, self._omega, error)
         weight = np.where(self._robust, 1.0 / (1.0 + squared / _ROBUST), 1.0)
@@ -138,20 +127,13 @@ class _System:
         ji = -jj
         ji[:, 0, 2], ji[:, 1, 2] = local[:, 1], -local[:, 0]
         oi, oj = omega @ ji, omega @ jj
-        blocks = [
-            np.einsum("eki,ekj->eij", a, b)
-            for a, b in ((ji, oi), (ji, oj), (jj, oi), (jj, oj))
-        ]
-        values = np.concatenate([each.ravel() for each in blocks])
-        shape = (self._size, self._size)
-        kept = self._kept
-        matrix = csc_matrix(
-            (values[kept], (self._rows[kept], self._columns[kept])), shape=shape
-        )
-        right = np.zeros((self._size // 3 + 1, 3))
-        np.add.at(right, self._i, -np.einsum("eki,ek->ei", oi, error))
-        np.add.at(right, self._j, -np.einsum("eki,ek->ei", oj, error))
-        return matrix, right[1:].ravel()
+        diagonal, right = np.zeros((len(poses), 3, 3)), np.zeros((len(poses), 3))
+        for at, jacobian, weighted in ((self._i, ji, oi), (self._j, jj, oj)):
+            np.add.at(diagonal, at, np.einsum("eki,ekj->eij", jacobian, weighted))
+            np.add.at(right, at, -np.einsum("eki,ek->ei", weighted, error))
+        beside = np.einsum("eki,ekj->eij", ji[self._free], oj[self._free])
+        diagonal[:, range(3), range(3)] *= 1.0 + damping
+        return self._solver.solve(diagonal[1:], beside, right[1:])
 
     def _errors(self, poses: Matrix) -> tuple[Matrix, Matrix]:
         """Return the errors (E, 3) and the targets (E, 2) in their sources' frames."""
@@ -164,17 +146,3 @@ class _System:
         turn = target[:, 2] - source[:, 2] - self._z[:, 2]
         error[:, 2] = np.remainder(turn + np.pi, 2 * np.pi) - np.pi
         return error, local
-
-
-def _solve(matrix: Any, right: Matrix, damping: float) -> Matrix:
-    from scipy.sparse import diags
-    from scipy.sparse.linalg import splu
-
-    if damping:
-        matrix = matrix + diags(damping * matrix.diagonal(), format="csc")
-    options = {"SymmetricMode": True}
-    factor = splu(
-        matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options
-    )
-    solution: Matrix = factor.solve(right)
-    return solution

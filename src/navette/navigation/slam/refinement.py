@@ -115,8 +115,7 @@ def _refine_kernel(
     information: Matrix3,
     quality: NDArray[np.float64],
 ) -> None:
-    gradient = np.empty(3)
-    step = np.empty(3)
+    gradient, right, step = np.empty(3), np.empty(3), np.empty(3)
     for k in range(steps + 1):
         # First over the whole radius, then over the surface nearby.
         radius = surface.cell_m if k < 3 else 0.5 * surface.cell_m
@@ -128,7 +127,10 @@ def _refine_kernel(
         away = pose - prior_pose
         away[2] -= math.tau * math.floor(away[2] / math.tau + 0.5)
         total = information + prior_information
-        right = -gradient - prior_information @ away
+        for i in range(3):
+            right[i] = -gradient[i]
+            for j in range(3):
+                right[i] -= prior_information[i, j] * away[j]
         if not solve(total, right, step):
             return
         size = math.sqrt(step[0] * step[0] + step[1] * step[1]) + abs(step[2])

@@ -113,3 +113,10 @@ def test_a_node_without_a_path_has_no_covariance() -> None:
     table.add(GraphEdge(0, 1, Pose2(1.0, 0.0, 0.0), INFORMATION))
     found = covariances_from(0, np.zeros((3, 3)), table.table(3))
     assert np.isnan(found[2]).all()
+
+
+def test_poses_that_no_edge_measures_stay() -> None:
+    poses, edges = chain(square(3), 4)
+    nothing = edges[-1]._replace(information=np.zeros((3, 3)))
+    result = optimise(poses, [*edges[:-1], nothing])
+    np.testing.assert_array_equal(result.poses[-1], poses[-1])
