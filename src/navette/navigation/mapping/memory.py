@@ -102,11 +102,11 @@ class MapMemory:
 
     def reset(self) -> None:
         """Clear the map: the loaded map, else unknown cells of the initial extent."""
-        # What clearing restores, and grows with the map; None: unknown cells.
-        self._base: NDArray[np.int8] | None = None
+        # Row and column of the loaded map's first cell, once the map has grown.
+        self._loaded_at = 0, 0
         if self._loaded is not None:
-            self._base, self.spec = self._loaded
-            self._cells = self._base.copy()
+            cells, self.spec = self._loaded
+            self._cells = cells.copy()
         else:
             self.spec = self._initial_spec()
             self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
@@ -140,7 +140,11 @@ class MapMemory:
             self.reset()
             return
         cleared = region.mask(self.spec)
-        self._cells[cleared] = UNKNOWN if self._base is None else self._base[cleared]
+        self._cells[cleared] = UNKNOWN
+        if self._loaded is not None:
+            (row, column), (cells, _) = self._loaded_at, self._loaded
+            there = np.s_[row : row + cells.shape[0], column : column + cells.shape[1]]
+            np.copyto(self._cells[there], cells, where=cleared[there])
         self._masks.cells[cleared] = 0
         if self._log_odds is not None:
             self._log_odds[cleared] = self._evidence_of(self._cells[cleared])
@@ -317,8 +321,8 @@ class MapMemory:
         self._marked.grow(growth.rows[0], growth.columns[0])
         self.spec = growth.spec
         self._cells = padded(self._cells, pad, UNKNOWN)
-        if self._base is not None:
-            self._base = padded(self._base, pad, UNKNOWN)
+        row, column = self._loaded_at
+        self._loaded_at = row + pad[0][0], column + pad[1][0]
         self._masks.grow(pad, self._written)
         self._vanished.grow(pad, self._written)
         self._written.grow(pad)

@@ -475,11 +475,11 @@ class MapMemoryNode(StageNode):
 
     def load_map(self, cells: Cells, spec: GridSpec) -> None:
         """Replace the map by a loaded one; scans change it from now on."""
-        self._rebuilding.drop()
-        self._memory.load(cells, spec)
-        self._gate.reset()
         frame_id, now_ns = self.params.map_frame, self._now_ns()
         known = grid_to_message(cells, spec, frame_id, now_ns)
+        self._rebuilding.drop()
+        self._memory.load(*grid_from_message(known))  # which has the only copy
+        self._gate.reset()
         self.hand_over(topics.STATIC_MAP.name, known)
         self._publish_map(self._now_ns())
 

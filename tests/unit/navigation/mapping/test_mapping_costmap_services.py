@@ -26,6 +26,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.grids.costmap_values import costmap_values
 from navette.navigation.mapping import MapMemory, MapMemoryParams
+from navette.navigation.mapping.memory import PlacedCostmap
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter
 from navette.runtime.stage.path_messages import pose_message
@@ -207,3 +208,23 @@ def test_clearing_restores_the_loaded_map(fusion: str) -> None:
     assert (memory.occupancy() == cells).all()
     memory.reset()
     assert (memory.occupancy() == cells).all()
+
+
+def test_clearing_restores_the_loaded_map_after_growth() -> None:
+    """Towards the loaded map's first row and column, whose places change."""
+    memory = MapMemory(MapMemoryParams(growth_m=1.0, erase_range_m=50.0))
+    loaded = np.full((20, 30), -1, np.int8)
+    loaded[4:16, 6:24] = 0
+    loaded[10, 6:24] = 100
+    memory.load(loaded, GridSpec(0.1, 30, 20, Pose2(0.0, 0.0, 0.0)))
+    free = np.zeros((40, 50), np.int8)
+    spec = GridSpec(0.1, 50, 40, Pose2(-2.5, -2.4, 0.0))
+    memory.fuse(PlacedCostmap(free, spec, (0.5, 0.5), Pose2(0.5, 0.5, 0.0), 0))
+    assert memory.spec.origin.x == pytest.approx(-3.0)
+    assert memory.spec.origin.y == pytest.approx(-3.0)
+    seen = memory.occupancy()
+    assert (seen[30:50, 30:60] != loaded).any()
+    memory.clear(SquareRegion(0.0, 0.0, 20.0))
+    expected = np.full(memory.spec.shape, -1, np.int8)
+    expected[30:50, 30:60] = loaded
+    np.testing.assert_array_equal(memory.occupancy(), expected)

@@ -47,11 +47,12 @@ class Candidates(NamedTuple):
 
 def search_map(field: LikelihoodField, points: Points) -> Candidates:
     """Return the poses of the base from which the points (M, 2), base, fit the map."""
-    if not len(points) or not field.is_free.any():
+    is_free = field.is_free()
+    if not len(points) or not is_free.any():
         return Candidates(np.empty((0, 3)), np.empty(0))
     few = _spread(points, _BEAMS)
     blurred = field.blurred(_BLUR_M, _RANDOM)
-    poses = _coarse_poses(blurred, few)
+    poses = _coarse_poses(blurred, is_free, few)
     coarse = blurred.scores(poses, few)
     count = min(_RANKED, len(poses))
     best = np.argpartition(-coarse, count - 1)[:count]
@@ -87,13 +88,15 @@ def _spread(points: Points, count: int) -> Points:
     return points[np.linspace(0, len(points) - 1, count).round().astype(np.int64)]
 
 
-def _coarse_poses(field: LikelihoodField, points: Points) -> Poses:
+def _coarse_poses(
+    field: LikelihoodField, is_free: NDArray[np.bool_], points: Points
+) -> Poses:
     """Return poses (N, 3) at free cells, the most promising ones of a large map."""
     step = max(1, round(_SPACING_M / field.spec.resolution))
     offset = step // 2
-    on_grid = field.is_free[offset::step, offset::step]
+    on_grid = is_free[offset::step, offset::step]
     if not on_grid.any():  # narrow places between the grid's lines
-        free = np.argwhere(field.is_free)
+        free = np.argwhere(is_free)
         return _with_headings(field, free[:: -(-len(free) // _MOST_CELLS)])
     if on_grid.sum() <= _MOST_CELLS:
         return _with_headings(field, offset + step * np.argwhere(on_grid))

@@ -39,7 +39,7 @@ class LikelihoodField:
         metres: (S,) distance by its square, m.
         log_likelihood: (S,) of a beam that ends at such a distance; at most 0.
         outside: log likelihood of a beam that ends outside the map.
-        is_free: (H, W) which cells are free.
+        cells: (H, W) the map: -1 unknown, 0 free … 100 occupied; not copied.
         sigma: standard deviation of a beam's end, m.
         random: share of beams that hit something else, 0 … 1.
     """
@@ -49,7 +49,7 @@ class LikelihoodField:
     metres: NDArray[np.float32]
     log_likelihood: NDArray[np.float32]
     outside: float
-    is_free: NDArray[np.bool_]
+    cells: NDArray[np.int8]
     sigma: float
     random: float
 
@@ -73,7 +73,7 @@ class LikelihoodField:
             reach_m: distance beyond which all places are equal.
         """
         radius = math.ceil(reach_m / spec.resolution)
-        occupied = (cells >= OCCUPIED).astype(np.uint8)
+        occupied = (cells >= OCCUPIED).view(np.uint8)
         metres = metres_by_square(spec.resolution, radius, reach_m)
         return cls(
             spec,
@@ -81,7 +81,7 @@ class LikelihoodField:
             metres,
             _log_likelihood(metres, sigma, random),
             _log_likelihood(np.array([reach_m]), sigma, random).item(),
-            (cells >= 0) & (cells <= FREE_UP_TO),
+            cells,
             sigma,
             random,
         )
@@ -96,6 +96,10 @@ class LikelihoodField:
             sigma=sigma,
             random=random,
         )
+
+    def is_free(self) -> NDArray[np.bool_]:
+        """Return which cells (H, W) are free."""
+        return (self.cells >= 0) & (self.cells <= FREE_UP_TO)
 
     @cached_property
     def _largest(self) -> int:
