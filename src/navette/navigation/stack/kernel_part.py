@@ -3,9 +3,9 @@
     python -m navette.navigation.stack.kernel_part PART [later]
 
 The machine code is stored and the part noted as prepared; the program that starts this
-process then loads it. PART is ``planning``, ``locating`` for SLAM, the filter of its
-odometry and exploration, or ``driving`` for all the rest and a short drive. ``later``
-leaves the processor to other processes.
+process then loads it. PART is ``planning``, ``locating`` for SLAM, AMCL, the filter of
+their odometry and exploration, or ``driving`` for all the rest and a short drive.
+``later`` leaves the processor to other processes.
 """
 
 import os
@@ -13,9 +13,12 @@ import sys
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 import navette
 from navette.files.kernels import note_prepared
+from navette.geometry import Pose2
+from navette.navigation.grids import FREE, LETHAL, UNKNOWN, CellWindow, GridSpec
 from navette.navigation.stack.options import RunOptions
 
 LOCATING = "locating"
@@ -32,7 +35,6 @@ def mark_of(part: str) -> str:
 
 def compile_planning() -> None:
     """Compile the kernels of the planner and of keep-out zones."""
-    from navette.navigation.grids import CellWindow, GridSpec
     from navette.navigation.grids.zones import KeepOutZones
 
     _make("planner")
@@ -64,30 +66,42 @@ def compile_driving() -> None:
 
 
 def compile_locating() -> None:
-    """Compile the kernels of SLAM, of the filter of its odometry and of exploration."""
+    """Compile the kernels of SLAM, AMCL, the filter of odometry and exploration."""
     from navette.navigation.slam.warm_up import warm_up
 
     warm_up()
     _make("ekf", gps0="fix")
-    _explore()
+    # A room with one side open.
+    spec = GridSpec(0.1, 80, 80, Pose2(0.0, 0.0, 0.0))
+    cells = np.full(spec.shape, UNKNOWN, np.int8)
+    cells[9:61, 9:60] = LETHAL
+    cells[10:60, 10:60] = FREE
+    _explore(cells, spec)
+    _localize(cells, spec)
 
 
-def _explore() -> None:
-    """Find the frontiers of a room with one side open."""
-    from navette.geometry import Pose2
-    from navette.navigation.grids import FREE, LETHAL, UNKNOWN, GridSpec
+def _explore(cells: NDArray[np.int8], spec: GridSpec) -> None:
+    """Find the frontiers of a map (H, W)."""
     from navette.navigation.missions.explore.frontiers import (
         FrontierParams,
         FrontierSearch,
     )
 
-    spec = GridSpec(0.1, 80, 80, Pose2(0.0, 0.0, 0.0))
-    cells = np.full(spec.shape, UNKNOWN, np.int8)
-    cells[9:61, 9:60] = LETHAL
-    cells[10:60, 10:60] = FREE
     search = FrontierSearch.of(cells, spec, FrontierParams())
     if search.explore((3.0, 3.0)).best is None:
         raise RuntimeError("no frontier: kernels of exploration were not called")
+
+
+def _localize(cells: NDArray[np.int8], spec: GridSpec) -> None:
+    """Search a map (H, W) for a robot that sees its obstacles from the corner."""
+    from navette.navigation.localization.amcl import LikelihoodField
+    from navette.navigation.localization.amcl.global_search import search_map
+
+    field = LikelihoodField.of(cells, spec, sigma=0.2, random=0.1, reach_m=2.0)
+    points = spec.centers_of(np.argwhere(cells == LETHAL))[::4]
+    poses = search_map(field, points).poses
+    field.share_within(poses[0], points, 0.1)
+    field.agreement(poses, points, 0.1)
 
 
 def _make(name: str, **parameters: str) -> None:
