@@ -358,3 +358,22 @@ def test_no_kernel_uses_what_numba_implements_with_scipy() -> None:
             assert not isinstance(node, ast.MatMult), f"{where} has a product @"
             if isinstance(node, ast.Attribute):
                 assert node.attr not in with_scipy, f"{where} uses {node.attr}"
+
+
+DRIVE = """
+import math, sys
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
+
+simulation = Simulation(RunOptions(goals=((2.0, 1.0),), headless=True, speed=math.inf))
+simulation.executor.spin_for(4_000_000_000)
+simulation.close()
+print("scipy.linalg" in sys.modules)
+"""
+
+
+def test_a_drive_with_stored_kernels_imports_no_linear_algebra() -> None:
+    """Numba does so for ``np.median``, ``np.searchsorted`` and the like in kernels."""
+    command = [sys.executable, "-c", DRIVE]
+    subprocess.check_output(command)  # compiles what is not stored
+    assert subprocess.check_output(command, text=True) == "False\n"
