@@ -478,7 +478,8 @@ class MapMemoryNode(StageNode):
         frame_id, now_ns = self.params.map_frame, self._now_ns()
         known = grid_to_message(cells, spec, frame_id, now_ns)
         self._rebuilding.drop()
-        self._memory.load(*grid_from_message(known))  # which has the only copy
+        shared, _ = grid_from_message(known)  # no copy, but a rounded geometry
+        self._memory.load(shared, spec)
         self._gate.reset()
         self.hand_over(topics.STATIC_MAP.name, known)
         self._publish_map(self._now_ns())

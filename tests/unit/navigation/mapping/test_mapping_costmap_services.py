@@ -228,3 +228,10 @@ def test_clearing_restores_the_loaded_map_after_growth() -> None:
     expected = np.full(memory.spec.shape, -1, np.int8)
     expected[30:50, 30:60] = loaded
     np.testing.assert_array_equal(memory.occupancy(), expected)
+
+
+def test_a_loaded_map_keeps_its_exact_geometry(robot: MappedRobot) -> None:
+    """Messages round it: their resolution is a float32."""
+    spec = GridSpec(1 / 30, 30, 20, Pose2(0.1, 0.2, 0.3))
+    robot.node.load_map(np.zeros(spec.shape, np.int8), spec)
+    assert robot.node._memory.spec == spec
