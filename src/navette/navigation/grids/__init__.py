@@ -16,7 +16,7 @@ from navette.navigation.grids.collision_check import (
     CollisionCheck,
     MovingBody,
 )
-from navette.navigation.grids.compare import Changes, compare
+from navette.navigation.grids.compare import count_appeared, count_vanished
 from navette.navigation.grids.distance import distance_field
 from navette.navigation.grids.distance_levels import (
     DistanceLevels,
@@ -151,8 +151,8 @@ __all__ = [
     "placed",
     "cells_in_footprint",
     "checked_cells",
-    "Changes",
-    "compare",
+    "count_appeared",
+    "count_vanished",
     "CollisionCheck",
     "MovingBody",
     "Obstacles",

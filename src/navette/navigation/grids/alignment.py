@@ -46,8 +46,8 @@ class Alignment(NamedTuple):
 def align(target: GridSpec, source: GridSpec) -> Alignment:
     """Return the alignment of two grids whose origins are given in the same frame."""
     return Alignment(
-        _cell_transform(source, target),
-        _cell_transform(target, source),
+        cell_transform(source, target),
+        cell_transform(target, source),
         source.resolution <= target.resolution * (1.0 + 1e-6),
     )
 
@@ -59,7 +59,8 @@ def placed(spec: GridSpec, frame_T_grid: Pose2) -> GridSpec:
     )
 
 
-def _cell_transform(outer: GridSpec, inner: GridSpec) -> Affine:
+def cell_transform(outer: GridSpec, inner: GridSpec) -> Affine:
+    """Return the transform of cells of a grid to those of another."""
     outer_T_inner = outer.origin.inverse() @ inner.origin
     scale = inner.resolution / outer.resolution
     return (

@@ -1,11 +1,14 @@
 """Comparison of a new grid with a map: obstacles that appeared or vanished."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from navette.files.kernels import kernel
-from navette.navigation.grids.alignment import Affine, align, cell_at, has_lethal
+from navette.navigation.grids.alignment import (
+    Affine,
+    cell_at,
+    cell_transform,
+    has_lethal,
+)
 from navette.navigation.grids.checks import at_least, grid_array
 from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
 from navette.navigation.grids.windows import CellWindow
@@ -13,14 +16,7 @@ from navette.navigation.grids.windows import CellWindow
 _ANY = -128  # least int8: every cell counts, unknown ones too
 
 
-class Changes(NamedTuple):
-    """Numbers of cells in which a new grid and a map disagree about obstacles."""
-
-    appeared: int
-    vanished: int
-
-
-def compare(
+def count_appeared(
     remembered: Cells,
     spec: GridSpec,
     seen: Cells,
@@ -28,12 +24,10 @@ def compare(
     *,
     center: tuple[float, float],
     radius_m: float,
-) -> Changes:
-    """Count contradictions within a square around ``center``.
+) -> int:
+    """Count new obstacles within a square: lethal cells without one on the map.
 
-    ``appeared``: lethal cells of ``seen`` without a lethal map cell at their place or
-    beside it. ``vanished``: lethal cells of the map whose place was seen free, without
-    a lethal cell seen beside it. The tolerance is one cell, because from another angle
+    A lethal map cell at the place or beside it is the same obstacle: from another angle
     the same wall falls into neighbouring cells.
 
     Args:
@@ -41,7 +35,7 @@ def compare(
         spec: its geometry.
         seen: (h, w) int8, the new grid.
         seen_spec: its geometry in the map's frame.
-        center: (x, y) in the map's frame, m.
+        center: (x, y) of the square in the map's frame, m.
         radius_m: half the edge of the square, m.
 
     Raises:
@@ -49,26 +43,34 @@ def compare(
     """
     cells = grid_array("remembered", remembered, np.int8, spec)
     new = grid_array("seen", seen, np.int8, seen_spec)
-    at_least("radius_m", radius_m, 0.0)
-    alignment = align(spec, seen_spec)
-    appeared = _unmatched(
-        new,
-        _window(seen_spec, center, radius_m),
-        cells,
-        alignment.target_T_source,
-        np.int8(_ANY),
-    )
-    vanished = _unmatched(
-        cells,
-        _window(spec, center, radius_m),
-        new,
-        alignment.source_T_target,
-        np.int8(FREE),
-    )
-    return Changes(appeared, vanished)
+    window = _window(seen_spec, center, radius_m)
+    map_T_seen = cell_transform(spec, seen_spec)
+    return _unmatched(new, window, cells, map_T_seen, np.int8(_ANY))
+
+
+def count_vanished(
+    remembered: Cells,
+    spec: GridSpec,
+    seen: Cells,
+    seen_spec: GridSpec,
+    *,
+    center: tuple[float, float],
+    radius_m: float,
+) -> int:
+    """Count obstacles of the map within a square whose place was seen free.
+
+    A lethal cell seen beside it is the same obstacle. Arguments and errors as in
+    :func:`count_appeared`.
+    """
+    cells = grid_array("remembered", remembered, np.int8, spec)
+    new = grid_array("seen", seen, np.int8, seen_spec)
+    window = _window(spec, center, radius_m)
+    seen_T_map = cell_transform(seen_spec, spec)
+    return _unmatched(cells, window, new, seen_T_map, np.int8(FREE))
 
 
 def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> CellWindow:
+    at_least("radius_m", radius_m, 0.0)
     row, column = spec.cell_of(*center)
     reach = int(radius_m / spec.resolution)
     return CellWindow(

@@ -9,11 +9,12 @@ class FusionGate:
     """Decide which costmaps are fused into the map.
 
     - The first one with known cells: at once.
-    - On the timer: if the robot moved or turned far enough since the last; by a cell is
-      enough if that one saw through obstacles which may be gone.
-    - On arrival: if it contradicts the map near the robot (an object moved or came into
-      view), so that a waiting or fast robot does not use an old map until the next
-      timer; at most once per ``change_period_s``.
+    - On arrival: if an obstacle appeared near the robot, so that a waiting or fast
+      robot does not use an old map until the next timer; at most once per
+      ``change_period_s``.
+    - On the timer: if the robot moved or turned far enough since the last, or obstacles
+      of the map vanished, for which there is time: mostly single echoes beside a wall.
+      By a cell is far enough if the last saw through obstacles which may be gone.
 
     Never while the robot spins, falls or tilts: the scan is distorted, or at a height
     other than the one the robot drives at.
@@ -40,8 +41,7 @@ class FusionGate:
             return False
         if now_ns - self._last_ns < round(self.params.change_period_s * 1e9):
             return False
-        changes = memory.changes(costmap)
-        return max(changes) >= self.params.change_cells
+        return memory.appeared(costmap) >= self.params.change_cells
 
     def on_timer(self, newest: PlacedCostmap, memory: MapMemory) -> bool:
         """Return whether to fuse the newest costmap on the timer."""
@@ -56,7 +56,11 @@ class FusionGate:
         far_m = self.params.update_distance_m
         if is_clearing:
             far_m = min(far_m, self.params.resolution_m)
-        return moved >= far_m or turned >= self.params.update_angle_rad
+        if moved >= far_m or turned >= self.params.update_angle_rad:
+            return True
+        if not self.params.fuse_on_change:
+            return False
+        return memory.vanished(newest) >= self.params.change_cells
 
     def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
         """Record that ``costmap`` was fused."""

@@ -1,6 +1,7 @@
 """The map: all costmaps so far, fused."""
 
 import math
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -15,7 +16,6 @@ from navette.navigation.grids import (
     NO_CELLS,
     UNKNOWN,
     CellWindow,
-    Changes,
     GridSpec,
     MarkedCells,
     RowSpans,
@@ -23,7 +23,8 @@ from navette.navigation.grids import (
     SquareRegion,
     accumulate,
     cells_in_footprint,
-    compare,
+    count_appeared,
+    count_vanished,
     mark_points,
     merge,
     padded,
@@ -271,9 +272,16 @@ class MapMemory:
         """
         return self._update_marked().points
 
-    def changes(self, costmap: PlacedCostmap) -> Changes:
-        """Count obstacle cells near the robot that contradict the map."""
-        return compare(
+    def appeared(self, costmap: PlacedCostmap) -> int:
+        """Count obstacle cells near the robot that are new to the map."""
+        return self._count(count_appeared, costmap)
+
+    def vanished(self, costmap: PlacedCostmap) -> int:
+        """Count obstacle cells of the map near the robot that are seen free."""
+        return self._count(count_vanished, costmap)
+
+    def _count(self, count: Callable[..., int], costmap: PlacedCostmap) -> int:
+        return count(
             self._cells,
             self.spec,
             costmap.cells,
@@ -295,7 +303,7 @@ class MapMemory:
         costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0, hits=hits)
         trial.fuse(costmap)
         trial.fuse(costmap)  # which finds marked cells
-        trial.changes(costmap)
+        trial.appeared(costmap)
 
     def _initial_spec(self) -> GridSpec:
         params = self.params

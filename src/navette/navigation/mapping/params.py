@@ -68,14 +68,16 @@ class MapMemoryParams(FrameParams):
         above=0.0,
     )
     fuse_on_change: bool = param(
-        True, "fuse at once if a costmap contradicts the map near the robot"
+        True,
+        "fuse at once if an obstacle appeared near the robot, and on the timer if one "
+        "vanished",
     )
     change_range_m: float = param(
         5.0, "half the edge of the square that is compared", above=0.0
     )
     change_cells: int = param(
         3,
-        "appeared or vanished obstacle cells that count as a contradiction",
+        "appeared or vanished obstacle cells that count as a change",
         at_least=1,
         at_most=1_000_000,
     )

@@ -1,9 +1,16 @@
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.navigation.grids import Changes, GridSpec, compare, placed
+from navette.navigation.grids import (
+    GridSpec,
+    count_appeared,
+    count_vanished,
+    placed,
+)
 
 MAP = GridSpec(0.1, 100, 80, Pose2(-5.0, -4.0, 0.0))
 SEEN = GridSpec(0.1, 40, 40, Pose2(-2.0, -2.0, 0.0))
@@ -14,11 +21,15 @@ def free(spec: GridSpec) -> np.ndarray:
     return np.zeros(spec.shape, np.int8)
 
 
+class Changes(NamedTuple):
+    appeared: int
+    vanished: int
+
+
 def changes(remembered, seen, pose=ORIGIN, radius=1.5) -> Changes:
-    spec = placed(SEEN, pose)
-    return compare(
-        remembered, MAP, seen, spec, center=(pose.x, pose.y), radius_m=radius
-    )
+    grids = remembered, MAP, seen, placed(SEEN, pose)
+    square = {"center": (pose.x, pose.y), "radius_m": radius}
+    return Changes(count_appeared(*grids, **square), count_vanished(*grids, **square))
 
 
 def test_equal_grids_do_not_contradict() -> None:

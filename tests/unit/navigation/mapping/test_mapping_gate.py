@@ -56,7 +56,7 @@ def test_the_timer_waits_for_distance_or_turn(x, yaw, expected) -> None:
 
 
 def test_the_timer_waits_for_a_cell_while_obstacles_vanish() -> None:
-    gate, memory = fused_once(costmap())
+    gate, memory = fused_once(costmap(), fuse_on_change=False)
     seen = dataclasses.replace(
         costmap(obstacle=True),
         hits=np.array([(1.5, y) for y in np.arange(-0.5, 0.5, 0.02)]),
@@ -96,13 +96,19 @@ def test_nothing_is_fused_while_falling_or_tilted(motion) -> None:
     assert gate.on_arrival(costmap(vertical_speed=-0.1, tilt=0.05), memory, 0)
 
 
-def test_a_stationary_robot_fuses_changes() -> None:
+def test_a_stationary_robot_fuses_what_appeared_at_once() -> None:
     gate, memory = fused_once(costmap())
     assert not gate.on_arrival(costmap(), memory, SECOND)
     assert gate.on_arrival(costmap(obstacle=True), memory, SECOND)
+
+
+def test_a_stationary_robot_fuses_what_vanished_on_the_timer() -> None:
     gate, memory = fused_once(costmap(obstacle=True))
-    assert not gate.on_arrival(costmap(obstacle=True), memory, SECOND)
-    assert gate.on_arrival(costmap(), memory, SECOND)
+    assert not gate.on_timer(costmap(obstacle=True), memory)
+    assert not gate.on_arrival(costmap(), memory, SECOND)
+    assert gate.on_timer(costmap(), memory)
+    gate, memory = fused_once(costmap(obstacle=True), fuse_on_change=False)
+    assert not gate.on_timer(costmap(), memory)
 
 
 def test_changes_are_rate_limited_and_can_be_switched_off() -> None:
