@@ -7,6 +7,7 @@ import pytest
 
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.sensor_msgs.msg import LaserScan
 
 from .conftest import MakeSimulation
 from .test_amcl import map_file
@@ -85,6 +86,42 @@ def test_a_drive_is_the_same_if_only_parts_of_the_map_are_sent(
     assert len(commands[0]) > 100
     assert commands[1] == commands[0]
     assert maps[1] < maps[0] / 2
+
+
+@pytest.mark.slow
+def test_a_drive_is_the_same_if_somebody_reads_every_scan(
+    simulate: MakeSimulation, tmp_path: Path
+) -> None:
+    """Alone, navigation uses 20 of the Jackal's 50 scans a second."""
+    params = tmp_path / "noisy.yaml"
+    params.write_text(NOISY, encoding="utf-8")
+    commands: list[list[tuple[float, float]]] = []
+    readings: list[int] = []
+    for reads_all in (False, True):
+        simulation = simulate(
+            world="arena",
+            robot="jackal",
+            goals=((4.0, 2.0),),
+            max_time_s=6.0,
+            params_files=(params,),
+        )
+        sent: list[tuple[float, float]] = []
+        scans: list[LaserScan] = []
+
+        def note(msg: Twist, sent: list[tuple[float, float]] = sent) -> None:
+            sent.append((msg.linear.x, msg.angular.z))
+
+        subscribe = simulation.sim.create_subscription
+        subscribe(Twist, "/cmd_vel", note, 10)
+        lidar = subscribe(LaserScan, "/lidar", scans.append, 10, shared=True)
+        if not reads_all:
+            lidar.limit_rate(20.0)
+        simulation.run()
+        commands.append(sent)
+        readings.append(len(scans))
+    assert len(commands[0]) > 60
+    assert commands[1] == commands[0]
+    assert readings == [pytest.approx(120, abs=3), pytest.approx(300, abs=3)]
 
 
 @pytest.mark.long

@@ -21,9 +21,7 @@ def test_a_robot_that_brakes_and_turns_at_once_follows_its_commands(
     robot: str, simulate: MakeSimulation
 ) -> None:
     """Otherwise it stops later than control expects."""
-    simulation = simulate(
-        world="empty", robot=robot, start=Pose2(0, 0, 0), goals=()
-    )
+    simulation = simulate(world="empty", robot=robot, start=Pose2(0, 0, 0), goals=())
     [control] = [n for n in simulation.context.nodes if isinstance(n, ControlNode)]
     limits: ControlParams = control.params
     simulator = simulation.sim.simulator

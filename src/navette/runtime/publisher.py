@@ -1,6 +1,7 @@
 """Publishers of topics."""
 
 import logging
+import math
 from typing import Any, Generic, TypeVar
 
 from navette.errors import DecodeError
@@ -10,6 +11,7 @@ from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
 from navette.runtime.qos_watch import EndpointWatch
+from navette.runtime.stamp_selection import StampSelection
 from navette.runtime.time import Duration
 from navette.runtime.type_support import check_type
 from navette.transports import Encoded, Endpoint, PublisherPort
@@ -26,6 +28,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         "_entities",
         "_hand_over",
         "_loop",
+        "_selection",
         "_send",
         "_sequence",
         "_watch",
@@ -51,6 +54,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         self.qos_profile = qos_profile
         self.ports = ports
         self._loop = entities.context.loop
+        self._selection = StampSelection()
         self._sequence = max((port.initial_sequence for port in ports), default=0)
         self.event_handlers: list[EventHandler] = watch.event_handlers
         self._entities = entities
@@ -110,6 +114,17 @@ class Publisher(Destroyable, Generic[MsgT]):
         for port in self.ports:
             count += port.matched_count
         return count
+
+    def is_used(self, stamp_ns: int) -> bool:
+        """Return whether to make the message with this stamp of a fast source.
+
+        False if all subscriptions use the same number of messages per second (see
+        :meth:`Subscription.limit_rate`), and this is none of them. To be called for
+        each stamp.
+        """
+        rates = {port.most_hz for port in self.ports if port.matched_count}
+        self._selection.rate_hz = rates.pop() if len(rates) == 1 else math.inf
+        return self._selection.takes(stamp_ns)
 
     def assert_liveliness(self) -> None:
         """Renew the lease of a publisher with manual liveliness."""

@@ -149,6 +149,14 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         """Return the number of matched publishers."""
         return sum(port.matched_count for port in self.ports)
 
+    def limit_rate(self, most_hz: float) -> None:
+        """Tell the publishers that the last message of each period is enough.
+
+        Not a filter: see :meth:`Publisher.is_used`. Infinite: every message is used.
+        """
+        for port in self.ports:
+            port.most_hz = most_hz
+
     @property
     def is_cft_enabled(self) -> bool:
         """Whether a content filter is set."""

@@ -4,11 +4,11 @@
 import math
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Quaternion
+from navette.geometry import Quaternion, Vector3, quaternion_from_yaw
+from navette.geometry.se3 import multiply, rotate
 from navette.sim.instant import Instant
 from navette.sim.mount import Mount
 from navette.sim.sensor_specs import ImuSensor
@@ -53,7 +53,7 @@ class Imu:
         self.sensor = sensor
         self.mount = mount
         self._errors = errors
-        self._last: tuple[int, NDArray[np.float64]] | None = None
+        self._last: tuple[int, Vector3] | None = None
         self._bias = np.zeros(3)
         self._heading_error = 0.0  # rad
         self._heading_ns = 0
@@ -68,42 +68,41 @@ class Imu:
     def read(self, instant: Instant, rng: np.random.Generator) -> ImuReading:
         """Return the reading of an instant."""
         model, data, state, stamp_ns, _ = instant
-        position, world_R_sensor = self.mount.world(data)
+        # In plain numbers: NumPy takes four times as long for three of them.
+        position, orientation = self.mount.pose(data)
+        x, y, z, w = orientation
+        sensor_R_world = (-x, -y, -z, w)
         velocity, omega = state.point_velocity(position)
-        acceleration = self._mean_acceleration(velocity, stamp_ns)
-        force = world_R_sensor.T @ (acceleration - model.opt.gravity)
-        rate = world_R_sensor.T @ omega
-        quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, world_R_sensor.ravel())
-        self._turn(quaternion, stamp_ns, rng)
-        w, x, y, z = quaternion.tolist()
+        ax, ay, az = self._mean_acceleration(velocity, stamp_ns)
+        gx, gy, gz = model.opt.gravity.tolist()
+        force = np.array(rotate(sensor_R_world, (ax - gx, ay - gy, az - gz)))
+        rate = np.array(rotate(sensor_R_world, omega))
+        orientation = self._turned(orientation, stamp_ns, rng)
         s = self.sensor
         if s.acceleration_stddev > 0:
-            force = force + rng.normal(0.0, s.acceleration_stddev, 3)
+            force += rng.normal(0.0, s.acceleration_stddev, 3)
         if s.angular_velocity_stddev > 0:
-            rate = rate + rng.normal(0.0, s.angular_velocity_stddev, 3)
+            rate += rng.normal(0.0, s.angular_velocity_stddev, 3)
         if self._errors.turn_rate_bias > 0:
-            rate = rate + self._bias
-        return ImuReading(stamp_ns, (x, y, z, w), rate, force)
+            rate += self._bias
+        return ImuReading(stamp_ns, orientation, rate, force)
 
-    def _turn(
-        self, quaternion: NDArray[np.float64], stamp_ns: int, rng: np.random.Generator
-    ) -> None:
-        """Turn an orientation (w, x, y, z) about the vertical by the drift."""
+    def _turned(
+        self, orientation: Quaternion, stamp_ns: int, rng: np.random.Generator
+    ) -> Quaternion:
+        """Turn an orientation about the vertical by the drift."""
         drift = self._errors.heading_drift
         if drift == 0.0:
-            return
+            return orientation
         seconds = max(0, stamp_ns - self._heading_ns) * 1e-9
         self._heading_ns = stamp_ns
         self._heading_error += drift * math.sqrt(seconds) * float(rng.normal())
-        half = self._heading_error / 2
-        error = np.array([math.cos(half), 0.0, 0.0, math.sin(half)])
-        mujoco.mju_mulQuat(quaternion, error, quaternion.copy())
+        return multiply(quaternion_from_yaw(self._heading_error), orientation)
 
-    def _mean_acceleration(
-        self, velocity: NDArray[np.float64], stamp_ns: int
-    ) -> NDArray[np.float64]:
+    def _mean_acceleration(self, velocity: Vector3, stamp_ns: int) -> Vector3:
         last, self._last = self._last, (stamp_ns, velocity)
         if last is None or not 0 < stamp_ns - last[0] <= _LONGEST_MEAN_NS:
-            return np.zeros(3)  # no earlier velocity: assume no acceleration
-        return (velocity - last[1]) / ((stamp_ns - last[0]) * 1e-9)
+            return (0.0, 0.0, 0.0)  # no earlier velocity: assume no acceleration
+        (vx, vy, vz), (x, y, z) = velocity, last[1]
+        seconds = (stamp_ns - last[0]) * 1e-9
+        return ((vx - x) / seconds, (vy - y) / seconds, (vz - z) / seconds)

@@ -99,12 +99,11 @@ class Lidar(BeamSensor):
         """Cast all beams."""
         s, stamp_ns = self.sensor, instant.stamp_ns
         distance = self._cast(instant.model, instant.data)
-        if self._noise_m > 0:
-            rng.standard_normal(out=self._noise)
+        is_lost = self._draw(rng)
         ranges = np.empty(s.samples, np.float32)
         readings(distance, self._noise, self._noise_m, s.range_min, s.range_max, ranges)
-        if self._dropout > 0:
-            ranges[rng.random(s.samples) < self._dropout] = np.nan
+        if is_lost is not None:
+            ranges[is_lost] = np.nan
         return Scan(
             stamp_ns,
             s.angle_min,
@@ -113,6 +112,18 @@ class Lidar(BeamSensor):
             s.range_max,
             ranges,
         )
+
+    def skip(self, rng: np.random.Generator) -> None:
+        """Draw the noise of a scan without readers: that of later ones is the same."""
+        self._draw(rng)
+
+    def _draw(self, rng: np.random.Generator) -> NDArray[np.bool_] | None:
+        """Draw the noise of a scan; return which beams are lost, if any can be."""
+        if self._noise_m > 0:
+            rng.standard_normal(out=self._noise)
+        if self._dropout > 0:
+            return rng.random(self.sensor.samples) < self._dropout
+        return None
 
     def _cast(self, model: mujoco.MjModel, data: mujoco.MjData) -> NDArray[np.float64]:
         """True distances (N,) m, inf where nothing is hit."""

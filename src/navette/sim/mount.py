@@ -25,6 +25,12 @@ class Mount:
         position = data.xpos[self.body] + world_R_body @ self._offset
         return position, world_R_body @ self._rotation
 
+    def pose(self, data: mujoco.MjData) -> Transform3:
+        """Return ``world_T_sensor``."""
+        w, x, y, z = data.xquat[self.body].tolist()
+        px, py, pz = data.xpos[self.body].tolist()
+        return Transform3((px, py, pz), (x, y, z, w)) @ self.body_T_sensor
+
 
 def rotation_matrix(pose: Transform3) -> NDArray[np.float64]:
     """(3, 3) matrix of the pose's quaternion."""

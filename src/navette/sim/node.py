@@ -32,7 +32,7 @@ from navette.sim.run_control import RunControl
 from navette.sim.scene import Scene
 from navette.sim.sensor_messages import hazards_message
 from navette.sim.sensor_outputs import output_of
-from navette.sim.sensor_specs import ContactSensor, GnssSensor, Sensor
+from navette.sim.sensor_specs import ContactSensor, GnssSensor, LidarSensor, Sensor
 from navette.sim.sensor_topics import SensorTopic, sensors_of, topics_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
@@ -339,12 +339,16 @@ class SimNode(StageNode):
 
     def _publish_sensor(self, topic: SensorTopic, frame: str, stamp_ns: int) -> None:
         sensor, output = topic.sensor, output_of(topic)
+        publisher = self.publishers_by_topic[topic.name]
+        if isinstance(sensor, LidarSensor) and not publisher.is_used(stamp_ns):
+            self.simulator.skip_scan(topic.index)
+            return
         reading = None
         if output.needs_reading:
             reading = self._reading(type(sensor), topic.index, stamp_ns)
         # With the noise of the parameters, which the message states.
         used = self.simulator.devices[type(sensor)][topic.index].sensor
-        self.hand_over(topic.name, output.message(reading, used, stamp_ns, frame))
+        publisher.hand_over(output.message(reading, used, stamp_ns, frame))
 
     def _reading(self, kind: type[Sensor], index: int, stamp_ns: int) -> Any:
         """Measure, at most once at a time."""

@@ -328,6 +328,10 @@ class Simulator:
         )
         return self.devices[kind][index].read(instant, self._rngs[kind][index])
 
+    def skip_scan(self, index: int) -> None:
+        """Continue as after :meth:`scan`, at the stamp of a scan without readers."""
+        self.lidars[index].skip(self._rngs[LidarSensor][index])
+
     def scan(self, index: int = 0) -> Scan:
         """Return a scan of planar lidar ``index``."""
         scan: Scan = self.read(LidarSensor, index)

@@ -6,6 +6,7 @@ while a remote endpoint is matched. Actions are services and topics; a transport
 notion of them, nor of nodes.
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -150,6 +151,11 @@ class PublisherPort(ABC):
     def matched_count(self) -> int:
         """Number of subscriptions that receive the samples through this transport."""
 
+    @property
+    def most_hz(self) -> float:
+        """The rate that all these subscriptions agree on; infinite: every sample."""
+        return math.inf
+
     @abstractmethod
     def close(self) -> None:
         """Leave the topic; may be called again."""
@@ -157,6 +163,9 @@ class PublisherPort(ABC):
 
 class SubscriptionPort(ABC):
     """Port of one subscription on a transport."""
+
+    #: The subscription uses the last sample of each period only; infinite: all.
+    most_hz: float = math.inf
 
     @property
     @abstractmethod

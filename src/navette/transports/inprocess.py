@@ -1,5 +1,6 @@
 """The in-process transport: a topic table, at most one copy for each delivery."""
 
+import math
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -36,6 +37,7 @@ class InProcessPublisher(PublisherPort):
         self._transport = transport
         self._lifespan_ns = endpoint.qos.lifespan_ns
         # Tuples, replaced as a whole: a publishing thread sees no partial change.
+        self._subscriptions: tuple[InProcessSubscription, ...] = ()
         self._sinks: tuple[Sink, ...] = ()
         self._shared_sinks: tuple[Sink, ...] = ()
         self._history: deque[Item] | None = None
@@ -69,6 +71,7 @@ class InProcessPublisher(PublisherPort):
 
     def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
         """Replace the matched subscriptions."""
+        self._subscriptions = tuple(subscriptions)
         self._sinks = tuple(s.sink for s in subscriptions if not s.shared)
         self._shared_sinks = tuple(s.sink for s in subscriptions if s.shared)
 
@@ -86,6 +89,11 @@ class InProcessPublisher(PublisherPort):
     @property
     def matched_count(self) -> int:
         return len(self._sinks) + len(self._shared_sinks)
+
+    @property
+    def most_hz(self) -> float:
+        rates = {subscription.most_hz for subscription in self._subscriptions}
+        return rates.pop() if len(rates) == 1 else math.inf
 
     def close(self) -> None:
         self._transport.remove_publisher(self)

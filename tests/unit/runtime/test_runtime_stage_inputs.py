@@ -302,6 +302,22 @@ def test_a_fast_input_is_used_at_its_largest_rate_by_the_stamps() -> None:
         assert not node.is_stale("/odom")
 
 
+def test_the_largest_rate_of_an_input_can_change_and_its_sources_learn_of_it() -> None:
+    with GraphHarness() as graph:
+        node = graph.add(Thinned(context=graph.context))
+        source = graph.node.create_publisher(Odometry, "/odom", 10)
+        stamps_ns = range(0, 200_000_000, 20_000_000)
+        assert sum(map(source.is_used, stamps_ns)) == 3
+        node.change_rate("/odom", 50.0)
+        assert all(map(source.is_used, stamps_ns))
+        for k in range(10):
+            message = odometry(float(k))
+            message.header.stamp.nanosec = 20_000_000 * k
+            graph.publish("/odom", message)
+        graph.run_for(0.4)
+        assert len(node.received) == 10
+
+
 def test_a_callback_may_take_the_info_of_its_messages() -> None:
     with GraphHarness() as graph:
         node = graph.add(Numbering(context=graph.context))

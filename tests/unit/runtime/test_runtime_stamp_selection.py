@@ -2,7 +2,7 @@
 
 import pytest
 
-from navette.runtime.stage.stamp_selection import StampSelection
+from navette.runtime.stamp_selection import StampSelection
 
 MS = 1_000_000
 

@@ -1,5 +1,6 @@
 """Publishers and subscriptions."""
 
+import math
 from typing import Any
 
 import pytest
@@ -341,3 +342,35 @@ def test_a_destroyed_publisher_hands_nothing_over(graph: GraphHarness) -> None:
     publisher.destroy()
     with pytest.raises(InvalidHandle):
         publisher.hand_over(String(data="late"))
+
+
+def used_ms(graph: GraphHarness, *rates_hz: float) -> list[int]:
+    """Return the stamps of a source of 50 Hz that readers of these rates use."""
+    publisher = graph.node.create_publisher(String, "scan", 10)
+    for rate_hz in rates_hz:
+        graph.node.create_subscription(String, "scan", print, 10).limit_rate(rate_hz)
+    return [k for k in range(0, 200, 20) if publisher.is_used(k * 1_000_000)]
+
+
+@pytest.mark.parametrize("readers", [1, 3])
+def test_a_fast_source_need_not_make_what_all_readers_skip(
+    graph: GraphHarness, readers: int
+) -> None:
+    assert used_ms(graph, *readers * [20.0]) == [0, 40, 80, 140, 180]
+
+
+@pytest.mark.parametrize("rates_hz", [(), (math.inf,), (20.0, math.inf), (20.0, 10.0)])
+def test_a_source_makes_all_if_its_readers_do_not_agree(
+    graph: GraphHarness, rates_hz: tuple[float, ...]
+) -> None:
+    assert used_ms(graph, *rates_hz) == list(range(0, 200, 20))
+
+
+def test_a_reader_of_all_messages_may_come_and_go(graph: GraphHarness) -> None:
+    publisher = graph.node.create_publisher(String, "scan", 10)
+    graph.node.create_subscription(String, "scan", print, 10).limit_rate(20.0)
+    assert [publisher.is_used(k * 20_000_000) for k in range(4)] == [1, 0, 1, 0]
+    recorder = graph.node.create_subscription(String, "scan", print, 10)
+    assert [publisher.is_used(k * 20_000_000) for k in (4, 5)] == [1, 1]
+    graph.node.destroy_subscription(recorder)
+    assert [publisher.is_used(k * 20_000_000) for k in range(6, 10)] == [0, 1, 0, 1]

@@ -5,6 +5,7 @@ most ``rate_hz`` a second, in the scan's frame and with its stamp. An invalid sc
 dropped, so that the costmap becomes stale downstream.
 """
 
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -35,7 +36,6 @@ from navette.navigation.grids import (
 from navette.navigation.servers.costmap_services import CostmapServices
 from navette.params.plugins import MethodFaultError
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
-from navette.runtime.stage.stamp_selection import StampSelection
 
 
 class CostmapNode(StageNode):
@@ -83,7 +83,6 @@ class CostmapNode(StageNode):
             self._sources = ObstacleSources(self, self._layer_settings, self.params)
         self._costmap = make_costmap(self.params)
         self._costmap.warm_up()
-        self._selection = StampSelection(self.params.rate_hz)
         self._fault = ""  # newest of the user's method, or of a source
         self._newest: OccupancyGrid | None = None
         self._services = CostmapServices(self, "local_costmap", source=self)
@@ -94,10 +93,11 @@ class CostmapNode(StageNode):
         return super().declare_params()
 
     def inputs(self) -> tuple[Input, ...]:
+        scans = replace(self.INPUTS[0], most_hz=self.params.rate_hz)
         if not self._layer_settings.sources:
-            return self.INPUTS
+            return (scans,)
         settings = self._layer_settings
-        return (*self.INPUTS, *ObstacleSources.inputs(settings, self._obstacle_sources))
+        return (scans, *ObstacleSources.inputs(settings, self._obstacle_sources))
 
     def _obstacle_sources(self) -> ObstacleSources:
         assert self._sources is not None, "created before the node spins"
@@ -109,10 +109,8 @@ class CostmapNode(StageNode):
             self._sources.reset()
 
     def on_scan(self, msg: LaserScan) -> None:
-        """Publish the costmap of a selected scan."""
+        """Publish the costmap of a scan."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
-        if not self._selection.takes(stamp_ns):
-            return
         scan = PlanarScan(
             np.asarray(msg.ranges),
             msg.angle_min,
@@ -190,5 +188,4 @@ class CostmapNode(StageNode):
         self._costmap = make_costmap(self.params)
         if self._sources is not None:
             self._sources.configure(self.params)
-        if self.params.rate_hz != old.rate_hz:
-            self._selection = StampSelection(self.params.rate_hz)
+        self.change_rate(topics.LIDAR.name, self.params.rate_hz)

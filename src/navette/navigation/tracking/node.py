@@ -5,6 +5,7 @@ scan, with the scan's stamp, and once more, empty, when nothing moves any more.
 """
 
 import uuid
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -64,8 +65,11 @@ class TrackingNode(StageNode):
         self._obstacles.warm_up()
         self._poses = PoseTracker(self, self.params.base_frame, self.params.map_frame)
         self._odometry: Odometry | None = None  # newest, not used yet
-        self._used_ns: int | None = None
         self._found_any = False
+
+    def inputs(self) -> tuple[Input, ...]:
+        scans, odometry = self.INPUTS
+        return replace(scans, most_hz=self.params.rate_hz), odometry
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message for the next scan."""
@@ -74,11 +78,6 @@ class TrackingNode(StageNode):
     def on_scan(self, msg: LaserScan) -> None:
         """Publish what moves at the stamp of the scan."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
-        if self._used_ns is not None:
-            since_ns = stamp_ns - self._used_ns
-            # A tenth of the period less: stamps jitter.
-            if 0 <= since_ns < 0.9e9 / self.params.rate_hz:
-                return
         if self._odometry is not None:
             jumps = self._poses.jumps
             self._poses.update(self._odometry)
@@ -89,7 +88,6 @@ class TrackingNode(StageNode):
         base_T_sensor = self._poses.transform_to_base(msg.header.frame_id)
         if map_T_base is None or base_T_sensor is None:
             return
-        self._used_ns = stamp_ns
         try:
             scan = PlanarScan(
                 np.asarray(msg.ranges, np.float32),
@@ -108,6 +106,7 @@ class TrackingNode(StageNode):
     def on_params_changed(self, old: TrackingParams) -> None:
         """Forget all tracks and use the new values."""
         self._obstacles = MovingObstacles(self.params)
+        self.change_rate(topics.LIDAR.name, self.params.rate_hz)
         if (self.params.base_frame, self.params.map_frame) != (
             old.base_frame,
             old.map_frame,
@@ -120,7 +119,7 @@ class TrackingNode(StageNode):
         """Forget all scans and tracks."""
         self._obstacles.reset()
         self._poses.reset()
-        self._odometry, self._used_ns = None, None
+        self._odometry = None
 
     def _publish(self, found: list[TrackedObstacle], header: Header) -> None:
         header.frame_id = self.params.map_frame

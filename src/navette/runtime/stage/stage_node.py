@@ -1,6 +1,7 @@
 """Base class of Navette's nodes: topics and parameters are declared as data."""
 
 import dataclasses
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
@@ -26,7 +27,7 @@ from navette.runtime.ros_clock import JumpThreshold, TimeJump
 from navette.runtime.signatures import takes_arguments
 from navette.runtime.stage.dropped_inputs import DroppedInputs
 from navette.runtime.stage.params import declare_params
-from navette.runtime.stage.stamp_selection import StampSelection
+from navette.runtime.stamp_selection import StampSelection
 from navette.runtime.subscription import MessageInfo, Subscription
 from navette.runtime.time import Duration, stamp_to_ns
 from navette.runtime.worker import Worker
@@ -95,8 +96,8 @@ class Input(_Topic):
     #: uses a part of them and checks that itself.
     checks_contents: bool = True
     #: The callback gets the last message of each period, by the stamps of the headers;
-    #: None = every message. All count as arrivals.
-    most_hz: float | None = None
+    #: infinite = every message. All count as arrivals.
+    most_hz: float = math.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,6 +158,7 @@ class StageNode(Node):
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._apply_params)
         self._arrivals_ns: dict[str, int] = {}
+        self._selections: dict[str, StampSelection] = {}
         self._dropped = DroppedInputs(self)
         backward = JumpThreshold(
             min_forward=None, min_backward=Duration(nanoseconds=-1)
@@ -249,6 +251,14 @@ class StageNode(Node):
     def on_params_changed(self, old: Any) -> None:
         """Override to react to new values of ``self.params``."""
 
+    def change_rate(self, topic: str, most_hz: float) -> None:
+        """Change ``most_hz`` of an input that has one."""
+        self._selections[topic].rate_hz = most_hz
+        name = self.resolve_topic_name(topic)
+        for subscription in self.subscriptions:
+            if subscription.topic_name == name:
+                subscription.limit_rate(most_hz)
+
     def _on_time_jump(self, jump: TimeJump) -> None:
         self._arrivals_ns.clear()
         self.on_time_jump()
@@ -269,6 +279,7 @@ class StageNode(Node):
             undecodable = InvalidInputError(
                 "undecodable", f"its bytes are not a {type_name(kind)}"
             )
+            subscription.limit_rate(declared.most_hz)
             subscription.on_undecodable = partial(
                 self._dropped.add, declared.topic, undecodable
             )
@@ -278,8 +289,10 @@ class StageNode(Node):
         if isinstance(callback, str):
             callback = getattr(self, callback)
         takes_info = takes_arguments(callback, 2)
-        if declared.most_hz is not None:
-            callback = _at_most(declared.most_hz, callback)
+        if declared.most_hz < math.inf:
+            selection = StampSelection(declared.most_hz)
+            self._selections[declared.topic] = selection
+            callback = _selected(selection, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
         shared = self.context.input_checks
         checks = {
@@ -378,9 +391,9 @@ class StageNode(Node):
         self.params = declare_params(self, type(self.params))
 
 
-def _at_most(rate_hz: float, callback: OnMessage) -> OnMessage:
+def _selected(selection: StampSelection, callback: OnMessage) -> OnMessage:
     """Return a callback for messages of a header that skips those not selected."""
-    takes = StampSelection(rate_hz).takes
+    takes = selection.takes
 
     def call(msg: Any, *info: MessageInfo) -> Any:
         return callback(msg, *info) if takes(stamp_to_ns(msg.header.stamp)) else None

@@ -72,6 +72,17 @@ def test_parameters_apply_to_the_next_scan() -> None:
         assert costmaps.last.info.width == 81
 
 
+@pytest.mark.parametrize(("rate_hz", "used"), [(20.0, 9), (0.0, 20)])
+def test_scans_are_used_at_most_at_a_rate_that_may_change(rate_hz, used) -> None:
+    with GraphHarness() as graph:
+        node, costmaps = started(graph, rate_hz=10.0)
+        node.set_parameters([Parameter("rate_hz", value=rate_hz)])
+        for k in range(20):  # 50 a second
+            graph.publish("/lidar", scan([3.0] * 21, k * 20_000_000))
+            graph.run_for(0.02)
+        assert costmaps.count == used
+
+
 def test_wrong_parameters_are_refused() -> None:
     with GraphHarness() as graph:
         with pytest.raises(ParameterError, match="inflation_method"):

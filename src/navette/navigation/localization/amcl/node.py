@@ -133,13 +133,13 @@ class AmclNode(StageNode):
         return super().declare_params()
 
     def inputs(self) -> tuple[Input, ...]:
-        names = {
-            topics.LIDAR.name: self.params.scan_topic,
-            topics.STATIC_MAP.name: self.params.map_topic,
-        }
-        return tuple(
-            replace(each, topic=names.get(each.topic, each.topic))
-            for each in self.INPUTS
+        params = self.params
+        scans, odometry, known_map, start = self.INPUTS
+        return (
+            replace(scans, topic=params.scan_topic, most_hz=params.rate_hz),
+            odometry,
+            replace(known_map, topic=params.map_topic),
+            start,
         )
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -218,6 +218,7 @@ class AmclNode(StageNode):
     def on_params_changed(self, old: AmclParams) -> None:
         """Start again with the new values, at the present pose."""
         new = self.params
+        self.change_rate(new.scan_topic, new.rate_hz)
         if (new.base_frame_id, new.odom_frame_id) != (
             old.base_frame_id,
             old.odom_frame_id,

@@ -37,6 +37,9 @@ class AmclParams(Params):
     )
     scan_topic: str = param(topics.LIDAR.name, "topic of the scans")
     map_topic: str = param(topics.STATIC_MAP.name, "topic of the known map")
+    rate_hz: float = param(
+        20.0, "scans that are used per second, at most", at_least=1.0, at_most=200.0
+    )
     seed: int = param(0, "seed of the particles", at_least=0)
     random_seed: int = param(-1, "seed instead of the other one; -1: none", at_least=-1)
 

@@ -366,7 +366,7 @@ class EkfNode(StageNode):
         message = odometry_message(
             estimate, params.world_frame, params.base_link_frame, self._attitude
         )
-        self.publish(topics.ODOMETRY.name, message)
+        self.hand_over(topics.ODOMETRY.name, message)
         if params.publish_tf:
             self._publish_transform(estimate)
 
@@ -385,7 +385,7 @@ class EkfNode(StageNode):
         stamped = transform_message(
             estimate.stamp_ns, params.world_frame, child, transform
         )
-        self.publish(topics.TF.name, TFMessage(transforms=[stamped]))
+        self.hand_over(topics.TF.name, TFMessage(transforms=[stamped]))
 
     def _lookup(self, target: str, source: str) -> Transform3:
         if target == source:

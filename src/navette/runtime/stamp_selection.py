@@ -1,5 +1,7 @@
 """Selection of messages by their stamps, for inputs faster than required."""
 
+import math
+
 
 class StampSelection:
     """Selects the last message of each period: the newest one at the end of the period.
@@ -8,12 +10,21 @@ class StampSelection:
     interval between the last two.
 
     Args:
-        rate_hz: periods per second; 0 selects every message.
+        rate_hz: periods per second; infinite or 0: every message is selected.
     """
 
-    def __init__(self, rate_hz: float) -> None:
-        self._period_ns = round(min(1e9 / rate_hz, 1e18)) if rate_hz > 0 else 0
+    def __init__(self, rate_hz: float = math.inf) -> None:
         self._last_ns: int | None = None
+        self.rate_hz = rate_hz
+
+    @property
+    def rate_hz(self) -> float:
+        return self._rate_hz
+
+    @rate_hz.setter
+    def rate_hz(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._period_ns = round(min(1e9 / rate_hz, 1e18)) if rate_hz > 0 else 0
 
     def takes(self, stamp_ns: int) -> bool:
         """Return whether to use the message with this stamp; called for each."""
