@@ -8,6 +8,7 @@ the odometry continues the pose.
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
@@ -48,6 +49,8 @@ _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
 _WAITING = 16
 # Of the period between two matched scans, so that jitter of the scanner skips none.
 _EARLY = 0.8
+# Scans among which one is matched, for the same reason.
+_CHOICE = 2
 # States on the topic of the localization's status; navigation stops unless localized.
 _WAITING_FOR_SCANS, _LOCALIZED, _LOST = "localizing", "localized", "lost"
 
@@ -116,6 +119,10 @@ class SlamNode(StageNode):
         self._timer = self.create_timer(self.params.map_period_s, self._publish_map)
         self._services = SlamMapServices(self, session=self)
 
+    def inputs(self) -> tuple[Input, ...]:
+        scans, *others = self.INPUTS
+        return replace(scans, most_hz=_CHOICE * self.params.rate_hz), *others
+
     def destroy_node(self) -> None:
         """End the search, then destroy the node."""
         self._matcher.close()
@@ -154,6 +161,7 @@ class SlamNode(StageNode):
 
     def on_params_changed(self, old: SlamParams) -> None:
         """Use the new values from the next scan on; the map is kept."""
+        self.change_rate(topics.LIDAR.name, _CHOICE * self.params.rate_hz)
         self._use(partial(_set_params, params=self.params))
         if self.params.map_period_s != old.map_period_s:
             self.destroy_timer(self._timer)
