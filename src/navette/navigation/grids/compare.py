@@ -1,5 +1,7 @@
 """Comparison of a new grid with a map: obstacles that appeared or vanished."""
 
+import math
+
 import numpy as np
 
 from navette.files.kernels import kernel
@@ -45,7 +47,7 @@ def count_appeared(
     new = grid_array("seen", seen, np.int8, seen_spec)
     window = _window(seen_spec, center, radius_m)
     map_T_seen = cell_transform(spec, seen_spec)
-    return _unmatched(new, window, cells, map_T_seen, np.int8(_ANY))
+    return _unmatched(new, window, cells, map_T_seen, np.int8(_ANY), 1)
 
 
 def count_vanished(
@@ -56,17 +58,19 @@ def count_vanished(
     *,
     center: tuple[float, float],
     radius_m: float,
+    apart_m: float = 0.0,
 ) -> int:
     """Count obstacles of the map within a square whose place was seen free.
 
-    A lethal cell seen beside it is the same obstacle. Arguments and errors as in
-    :func:`count_appeared`.
+    A lethal cell seen beside it, or up to ``apart_m`` away, is the same obstacle. Other
+    arguments and errors as in :func:`count_appeared`.
     """
     cells = grid_array("remembered", remembered, np.int8, spec)
     new = grid_array("seen", seen, np.int8, seen_spec)
     window = _window(spec, center, radius_m)
     seen_T_map = cell_transform(seen_spec, spec)
-    return _unmatched(cells, window, new, seen_T_map, np.int8(FREE))
+    apart = max(1, math.ceil(apart_m / seen_spec.resolution - 1e-6))
+    return _unmatched(cells, window, new, seen_T_map, np.int8(FREE), apart)
 
 
 def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> CellWindow:
@@ -83,9 +87,14 @@ def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> Cel
 
 @kernel(allocates=False)
 def _unmatched(
-    grid: Cells, window: CellWindow, other: Cells, other_T_grid: Affine, least: np.int8
+    grid: Cells,
+    window: CellWindow,
+    other: Cells,
+    other_T_grid: Affine,
+    least: np.int8,
+    apart: int,
 ) -> int:
-    """Count lethal cells of ``grid`` without a lethal cell of ``other`` near them.
+    """Count lethal cells of ``grid`` with none of ``other`` up to ``apart`` cells away.
 
     Counts only places where ``other`` is at least ``least``.
     """
@@ -101,17 +110,19 @@ def _unmatched(
             row, column = cell_at(other_T_grid, r, window.first_column + k)
             if not (0 <= row < height and 0 <= column < width):
                 continue
-            if other[row, column] >= least and not _lethal_near(other, row, column):
+            if other[row, column] >= least and not _lethal_near(
+                other, row, column, apart
+            ):
                 count += 1
     return count
 
 
 @kernel(allocates=False)
-def _lethal_near(grid: Cells, row: int, column: int) -> bool:
-    """Whether a lethal cell is among the nine around (row, column)."""
+def _lethal_near(grid: Cells, row: int, column: int, apart: int) -> bool:
+    """Whether a lethal cell is in the square of cells around (row, column)."""
     height, width = grid.shape
-    for r in range(max(row - 1, 0), min(row + 2, height)):
-        for c in range(max(column - 1, 0), min(column + 2, width)):
+    for r in range(max(row - apart, 0), min(row + apart + 1, height)):
+        for c in range(max(column - apart, 0), min(column + apart + 1, width)):
             if grid[r, c] >= LETHAL:
                 return True
     return False

@@ -4,17 +4,20 @@ from navette.geometry import angle_difference
 from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
 from navette.navigation.mapping.params import MapMemoryParams
 
+# What vanishes this near an obstacle that stands does not open a way.
+_BESIDE_M = 0.15
+
 
 class FusionGate:
     """Decide which costmaps are fused into the map.
 
     - The first one with known cells: at once.
-    - On arrival: if an obstacle appeared near the robot, so that a waiting or fast
-      robot does not use an old map until the next timer; at most once per
-      ``change_period_s``.
-    - On the timer: if the robot moved or turned far enough since the last, or obstacles
-      of the map vanished, for which there is time: mostly single echoes beside a wall.
-      By a cell is far enough if the last saw through obstacles which may be gone.
+    - On arrival: if an obstacle near the robot appeared or moved away, so that a
+      waiting or fast robot does not use an old map until the next timer; at most once
+      per ``change_period_s``.
+    - On the timer: if the robot moved or turned far enough since the last, or obstacle
+      cells vanished beside an obstacle that stands: mostly single echoes. By a cell is
+      far enough if the last saw through obstacles which may be gone.
 
     Never while the robot spins, falls or tilts: the scan is distorted, or at a height
     other than the one the robot drives at.
@@ -41,7 +44,11 @@ class FusionGate:
             return False
         if now_ns - self._last_ns < round(self.params.change_period_s * 1e9):
             return False
-        return memory.appeared(costmap) >= self.params.change_cells
+        few = self.params.change_cells
+        return (
+            memory.appeared(costmap) >= few
+            or memory.vanished(costmap, _BESIDE_M) >= few
+        )
 
     def on_timer(self, newest: PlacedCostmap, memory: MapMemory) -> bool:
         """Return whether to fuse the newest costmap on the timer."""

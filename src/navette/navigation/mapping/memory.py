@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -276,9 +277,12 @@ class MapMemory:
         """Count obstacle cells near the robot that are new to the map."""
         return self._count(count_appeared, costmap)
 
-    def vanished(self, costmap: PlacedCostmap) -> int:
-        """Count obstacle cells of the map near the robot that are seen free."""
-        return self._count(count_vanished, costmap)
+    def vanished(self, costmap: PlacedCostmap, apart_m: float = 0.0) -> int:
+        """Count obstacle cells of the map near the robot that are seen free.
+
+        ``apart_m``: from each obstacle that is seen.
+        """
+        return self._count(partial(count_vanished, apart_m=apart_m), costmap)
 
     def _count(self, count: Callable[..., int], costmap: PlacedCostmap) -> int:
         return count(

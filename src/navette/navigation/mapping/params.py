@@ -68,9 +68,7 @@ class MapMemoryParams(FrameParams):
         above=0.0,
     )
     fuse_on_change: bool = param(
-        True,
-        "fuse at once if an obstacle appeared near the robot, and on the timer if one "
-        "vanished",
+        True, "fuse at once if an obstacle near the robot appeared or moved away"
     )
     change_range_m: float = param(
         5.0, "half the edge of the square that is compared", above=0.0

@@ -59,6 +59,19 @@ def test_vanished_obstacles_count_only_where_seen_free() -> None:
     assert changes(remembered, np.full(SEEN.shape, -1, np.int8)) == Changes(0, 0)
 
 
+@pytest.mark.parametrize(("apart_m", "count"), [(0.0, 4), (0.2, 4), (0.3, 0)])
+def test_what_vanished_near_an_obstacle_may_count_as_a_part_of_it(
+    apart_m: float, count: int
+) -> None:
+    remembered, seen = free(MAP), free(SEEN)
+    remembered[38:42, 55] = 100
+    seen[18:22, 28] = 100  # 0.3 m behind
+    where = {"center": ORIGIN[:2], "radius_m": 1.5}
+    assert count_vanished(remembered, MAP, seen, SEEN, **where, apart_m=apart_m) == (
+        count
+    )
+
+
 def test_only_cells_within_the_radius_count() -> None:
     seen, remembered = free(SEEN), free(MAP)
     seen[20, 38] = 100

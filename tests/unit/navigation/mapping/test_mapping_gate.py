@@ -102,13 +102,23 @@ def test_a_stationary_robot_fuses_what_appeared_at_once() -> None:
     assert gate.on_arrival(costmap(obstacle=True), memory, SECOND)
 
 
-def test_a_stationary_robot_fuses_what_vanished_on_the_timer() -> None:
+def test_a_stationary_robot_fuses_what_moved_away_at_once() -> None:
     gate, memory = fused_once(costmap(obstacle=True))
-    assert not gate.on_timer(costmap(obstacle=True), memory)
-    assert not gate.on_arrival(costmap(), memory, SECOND)
-    assert gate.on_timer(costmap(), memory)
-    gate, memory = fused_once(costmap(obstacle=True), fuse_on_change=False)
-    assert not gate.on_timer(costmap(), memory)
+    assert not gate.on_arrival(costmap(obstacle=True), memory, SECOND)
+    assert gate.on_arrival(costmap(), memory, SECOND)
+
+
+def test_what_vanished_beside_an_obstacle_that_stands_waits_for_the_timer() -> None:
+    """Of a wall, mostly single echoes: a map a second shows it soon enough."""
+    wall = costmap(obstacle=True)
+    with_echoes = dataclasses.replace(wall, cells=wall.cells.copy())
+    with_echoes.cells[17:22, 32] = 100  # less than 0.3 m before it
+    gate, memory = fused_once(with_echoes)
+    assert not gate.on_timer(with_echoes, memory)
+    assert not gate.on_arrival(wall, memory, SECOND)
+    assert gate.on_timer(wall, memory)
+    gate, memory = fused_once(with_echoes, fuse_on_change=False)
+    assert not gate.on_timer(wall, memory)
 
 
 def test_changes_are_rate_limited_and_can_be_switched_off() -> None:
