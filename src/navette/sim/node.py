@@ -348,7 +348,7 @@ class SimNode(StageNode):
             reading = self._reading(type(sensor), topic.index, stamp_ns)
         # With the noise of the parameters, which the message states.
         used = self.simulator.devices[type(sensor)][topic.index].sensor
-        publisher.hand_over(output.message(reading, used, stamp_ns, frame))
+        self.hand_over(topic.name, output.message(reading, used, stamp_ns, frame))
 
     def _reading(self, kind: type[Sensor], index: int, stamp_ns: int) -> Any:
         """Measure, at most once at a time."""

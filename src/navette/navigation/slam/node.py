@@ -9,7 +9,7 @@ the odometry continues the pose.
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
@@ -109,9 +109,6 @@ class SlamNode(StageNode):
 
     def __init__(self, node_name: str = "slam", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        # All that uses the SLAM is computed there, in order: a robot that is lost is
-        # searched for in the whole map. A map being drawn must not delay it.
-        self._matcher = Worker(self)
         # Programs of Nav2 wait for the node that locates the robot.
         self._lifecycle = StageLifecycle(self, "amcl")
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
@@ -123,9 +120,19 @@ class SlamNode(StageNode):
         scans, *others = self.INPUTS
         return replace(scans, most_hz=_CHOICE * self.params.rate_hz), *others
 
+    @cached_property
+    def _matcher(self) -> Worker:
+        """Computes all that uses the SLAM, in order.
+
+        A robot that is lost is searched for in the whole map. A map being drawn must
+        not delay it.
+        """
+        return Worker(self)
+
     def destroy_node(self) -> None:
-        """End the search, then destroy the node."""
-        self._matcher.close()
+        """End the search, then destroy the node; also before ``__init__`` ends."""
+        if "_matcher" in vars(self):
+            self._matcher.close()
         super().destroy_node()
 
     def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:

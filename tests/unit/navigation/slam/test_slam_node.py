@@ -4,7 +4,7 @@ import gc
 import math
 import tracemalloc
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -279,3 +279,19 @@ def test_a_robot_that_stands_needs_no_more_memory() -> None:
         tracemalloc.stop()
         # What is allocated once falls into one of the three; a leak is in each.
         assert min(np.diff(traced)) / 100 < 250, "bytes per scan"
+
+
+class Interrupted(SlamNode):
+    """Ends before its ``__init__`` does, as in a program that is stopped meanwhile."""
+
+    def declare_params(self) -> NoReturn:
+        raise RuntimeError("stopped")
+
+
+def test_a_node_that_is_not_complete_can_be_destroyed() -> None:
+    with GraphHarness() as graph:
+        with pytest.raises(RuntimeError, match="stopped"):
+            Interrupted(context=graph.context)
+        [node] = [each for each in graph.context.nodes if isinstance(each, SlamNode)]
+        node.destroy_node()
+        assert node not in graph.context.nodes
