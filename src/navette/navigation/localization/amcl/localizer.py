@@ -19,7 +19,6 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Points,
 )
 from navette.navigation.localization.amcl.messages import thinned
-from navette.navigation.localization.amcl.odometry_jumps import OdometryJumps
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.localization.amcl.particle_filter import (
     GOOD_FIT,
@@ -102,7 +101,6 @@ class MapLocalizer:
         )
         self.confidence = ConfidenceMonitor(params)
         self._updated: ScanView | None = None  # scan of the last update
-        self._jumps = OdometryJumps()
         self._searched_ns = -_SEARCH_NS
         self._map_T_odom: Pose2 | None = None
         self._is_given = False  # the pose, and no scan has contradicted it yet
@@ -140,7 +138,6 @@ class MapLocalizer:
 
     def step(self, scan: ScanView) -> Located:
         """Use a scan."""
-        self._follow_jump(scan)
         used = thinned(scan.points, self.params.max_beams)
         if self.confidence.state is LocalizationState.LOST:
             self._recent.clear()  # it may have been carried
@@ -160,11 +157,15 @@ class MapLocalizer:
             self.filter.update(used, may_skip=is_localized)
         return self._report(scan, is_updated=True)
 
-    def _follow_jump(self, scan: ScanView) -> None:
-        """Keep the pose if the odometry jumps: the robot does not."""
-        new_T_old = self._jumps.step(scan.odom_T_base, scan.stamp_ns)
-        if new_T_old is None:
-            return
+    def follow_jump(self, new_T_old: Pose2) -> Pose2 | None:
+        """Keep the pose if the odometry jumps: the robot does not.
+
+        Args:
+            new_T_old: from the odometry's frame before the jump to the one after.
+
+        Returns:
+            map_T_odom since the jump, if it is known.
+        """
         self._recent.move_odometry(new_T_old)
         before = self._updated
         if before is not None:
@@ -172,6 +173,7 @@ class MapLocalizer:
             self._updated = ScanView(before.points, odom_T_base, before.stamp_ns)
         if self._map_T_odom is not None:
             self._map_T_odom = self._map_T_odom @ new_T_old.inverse()
+        return self._map_T_odom
 
     def _is_due(self, scan: ScanView) -> bool:
         before = self._updated

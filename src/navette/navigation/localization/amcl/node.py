@@ -42,6 +42,7 @@ from navette.navigation.localization.amcl.messages import (
     scan_points,
     spatial_covariance,
 )
+from navette.navigation.localization.amcl.odometry_jumps import OdometryJumps
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
@@ -114,7 +115,7 @@ class AmclNode(StageNode):
         self._map: OccupancyGrid | None = None
         self._waits_since_ns: int | None = None
         self._state = LocalizationState.NO_MAP
-        self._tracker = self._new_tracker()
+        self._tracker, self._jumps = self._new_tracker(), OdometryJumps()
         self._attitude = AttitudeTracker()
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._status.report(LocalizationState.NO_MAP, StatusReporter.ERROR)
@@ -143,9 +144,19 @@ class AmclNode(StageNode):
         )
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Store the pose of the odometry."""
-        if self._tracker.update(msg):
-            self._attitude.update(msg)
+        """Store the pose of the odometry; correct the transform if it jumps."""
+        if not self._tracker.update(msg):
+            return
+        self._attitude.update(msg)
+        pose, stamp_ns = self._tracker.latest, self._tracker.stamp_ns
+        assert pose is not None, "the tracker accepted the odometry"
+        assert stamp_ns is not None, "with its stamp"
+        new_T_old = self._jumps.step(pose, stamp_ns)
+        if new_T_old is not None:
+            self._use(
+                lambda localizer: localizer.follow_jump(new_T_old),
+                partial(self._publish_transform, stamp_ns=stamp_ns),
+            )
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Localize on a map; another one keeps the pose."""
@@ -223,7 +234,7 @@ class AmclNode(StageNode):
             old.base_frame_id,
             old.odom_frame_id,
         ):
-            self._tracker = self._new_tracker()
+            self._tracker, self._jumps = self._new_tracker(), OdometryJumps()
         if self._map is not None:
             self._begin(self._map)
 
@@ -302,15 +313,7 @@ class AmclNode(StageNode):
     def _publish(self, found: _Found, view: ScanView) -> None:
         params, located = self.params, found.located
         odom_T_base, stamp_ns = view.odom_T_base, view.stamp_ns
-        if located.map_T_odom is not None and params.tf_broadcast:
-            ahead_ns = round(params.transform_tolerance * 1e9)
-            transform = transform_message(
-                min(stamp_ns + ahead_ns, _LATEST_NS),
-                params.global_frame_id,
-                params.odom_frame_id,
-                Transform3.from_pose2(located.map_T_odom),
-            )
-            self.publish(topics.TF.name, TFMessage(transforms=[transform]))
+        self._publish_transform(located.map_T_odom, stamp_ns)
         estimate = located.estimate
         if estimate is None:
             self._report(located.state)
@@ -335,6 +338,20 @@ class AmclNode(StageNode):
             particles = found.particles
             cloud = cloud_message(particles.poses, particles.weights, header)
             self.hand_over(topics.PARTICLES.name, cloud)
+
+    def _publish_transform(self, map_T_odom: Pose2 | None, stamp_ns: int) -> None:
+        params = self.params
+        if map_T_odom is None or not params.tf_broadcast:
+            return
+        if not self._lifecycle.is_active:
+            return
+        transform = transform_message(
+            min(stamp_ns + round(params.transform_tolerance * 1e9), _LATEST_NS),
+            params.global_frame_id,
+            params.odom_frame_id,
+            Transform3.from_pose2(map_T_odom),
+        )
+        self.publish(topics.TF.name, TFMessage(transforms=[transform]))
 
     def _report(self, state: LocalizationState, **details: Any) -> None:
         if state is not self._state:

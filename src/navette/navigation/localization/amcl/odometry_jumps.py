@@ -1,4 +1,4 @@
-"""Jumps of the odometry: motions that no robot makes between two scans.
+"""Jumps of the odometry: motions that no robot makes between two messages.
 
 An encoder fault, a restarted filter or a reset moves the odometry's frame, not the
 robot.
@@ -6,14 +6,14 @@ robot.
 
 from navette.geometry import Pose2, angle_difference
 
-# Motion between two scans beyond that at the former speed, and its growth with the
+# Motion between two messages beyond that at the former speed, and its growth with the
 # time between them: half of an acceleration that no wheeled robot has.
 _SLACK_M, _SLACK_RAD = 0.3, 0.35
 _HALF_MPS2, _HALF_RADPS2 = 5.0, 10.0
 
 
 class OdometryJumps:
-    """Finds jumps in the poses of the odometry, scan by scan."""
+    """Finds jumps in the poses of the odometry."""
 
     def __init__(self) -> None:
         self._odom_T_base: Pose2 | None = None
@@ -23,7 +23,7 @@ class OdometryJumps:
     def step(self, odom_T_base: Pose2, stamp_ns: int) -> Pose2 | None:
         """Return the transform from the old to the new frame after a jump, or None.
 
-        The robot's own motion between the two scans is neglected.
+        The robot's own motion between the two messages is neglected.
         """
         before, since_s = self._odom_T_base, (stamp_ns - self._stamp_ns) / 1e9
         self._odom_T_base, self._stamp_ns = odom_T_base, stamp_ns
