@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
@@ -158,7 +159,9 @@ class StageNode(Node):
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._apply_params)
         self._arrivals_ns: dict[str, int] = {}
+        # Of the inputs with a largest rate.
         self._selections: dict[str, StampSelection] = {}
+        self._limited: dict[str, list[Subscription[Any]]] = defaultdict(list)
         self._dropped = DroppedInputs(self)
         backward = JumpThreshold(
             min_forward=None, min_backward=Duration(nanoseconds=-1)
@@ -254,10 +257,8 @@ class StageNode(Node):
     def change_rate(self, topic: str, most_hz: float) -> None:
         """Change ``most_hz`` of an input that has one."""
         self._selections[topic].rate_hz = most_hz
-        name = self.resolve_topic_name(topic)
-        for subscription in self.subscriptions:
-            if subscription.topic_name == name:
-                subscription.limit_rate(most_hz)
+        for subscription in self._limited[topic]:
+            subscription.limit_rate(most_hz)
 
     def _on_time_jump(self, jump: TimeJump) -> None:
         self._arrivals_ns.clear()
@@ -279,7 +280,9 @@ class StageNode(Node):
             undecodable = InvalidInputError(
                 "undecodable", f"its bytes are not a {type_name(kind)}"
             )
-            subscription.limit_rate(declared.most_hz)
+            if declared.most_hz < math.inf:
+                subscription.limit_rate(declared.most_hz)
+                self._limited[declared.topic].append(subscription)
             subscription.on_undecodable = partial(
                 self._dropped.add, declared.topic, undecodable
             )
