@@ -11,10 +11,9 @@ from navette.geometry import Pose2
 from navette.navigation.grids import (
     LETHAL,
     GridSpec,
+    MapComparison,
     beam_directions,
     cost_table,
-    count_appeared,
-    count_vanished,
     distance_field,
     inflate,
     merge,
@@ -142,7 +141,6 @@ def test_a_merged_grid_does_not_contradict_the_map(source, pose) -> None:
     target_spec = GridSpec(0.1, 300, 300, Pose2(-15.0, -15.0, 0.0))
     target = np.full(target_spec.shape, -1, np.int8)
     merge(target, target_spec, source, spec)
-    for count in (count_appeared, count_vanished):
-        assert not count(
-            target, target_spec, source, spec, center=(pose.x, pose.y), radius_m=20.0
-        )
+    compared = MapComparison(target, target_spec, source, spec, (pose.x, pose.y), 20.0)
+    assert compared.count_appeared() == 0
+    assert compared.count_vanished() == 0

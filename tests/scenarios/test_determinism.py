@@ -1,5 +1,6 @@
 """Same world, goals and seed: the same bag, byte for byte."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.stack.simulation import Simulation
 
 from .conftest import MakeSimulation
 from .test_amcl import map_file
@@ -56,14 +58,27 @@ map_memory:
 """
 
 
+class Watched:
+    """A drive, with its commands and the messages of one topic."""
+
+    def __init__(self, simulation: Simulation, kind: type, topic: str) -> None:
+        self.commands: list[tuple[float, float]] = []
+        self.messages: list[Any] = []
+        subscribe = simulation.sim.create_subscription
+        subscribe(Twist, "/cmd_vel", self._note, 10)
+        self.reader = subscribe(kind, topic, self.messages.append, 10, shared=True)
+
+    def _note(self, msg: Twist) -> None:
+        self.commands.append((msg.linear.x, msg.angular.z))
+
+
 @pytest.mark.slow
 def test_a_drive_is_the_same_if_only_parts_of_the_map_are_sent(
     simulate: MakeSimulation, tmp_path: Path
 ) -> None:
     params = tmp_path / "parts.yaml"
     params.write_text(PARTS_ONLY, encoding="utf-8")
-    commands: list[list[tuple[float, float]]] = []
-    maps: list[int] = []
+    drives = []
     for files in ((), (params,)):
         simulation = simulate(
             world="course",
@@ -71,21 +86,12 @@ def test_a_drive_is_the_same_if_only_parts_of_the_map_are_sent(
             max_time_s=20.0,
             params_files=files,
         )
-        sent: list[tuple[float, float]] = []
-        whole: list[OccupancyGrid] = []
-
-        def note(msg: Twist, sent: list[tuple[float, float]] = sent) -> None:
-            sent.append((msg.linear.x, msg.angular.z))
-
-        subscribe = simulation.sim.create_subscription
-        subscribe(Twist, "/cmd_vel", note, 10)
-        subscribe(OccupancyGrid, "/map", whole.append, 10, shared=True)
+        drives.append(Watched(simulation, OccupancyGrid, "/map"))
         simulation.run()
-        commands.append(sent)
-        maps.append(len(whole))
-    assert len(commands[0]) > 100
-    assert commands[1] == commands[0]
-    assert maps[1] < maps[0] / 2
+    whole, parts = drives
+    assert len(whole.commands) > 100
+    assert parts.commands == whole.commands
+    assert len(parts.messages) < len(whole.messages) / 2
 
 
 @pytest.mark.slow
@@ -95,9 +101,8 @@ def test_a_drive_is_the_same_if_somebody_reads_every_scan(
     """Alone, navigation uses 20 of the Jackal's 50 scans a second."""
     params = tmp_path / "noisy.yaml"
     params.write_text(NOISY, encoding="utf-8")
-    commands: list[list[tuple[float, float]]] = []
-    readings: list[int] = []
-    for reads_all in (False, True):
+    drives = []
+    for rate_hz in (20.0, math.inf):
         simulation = simulate(
             world="arena",
             robot="jackal",
@@ -105,23 +110,14 @@ def test_a_drive_is_the_same_if_somebody_reads_every_scan(
             max_time_s=6.0,
             params_files=(params,),
         )
-        sent: list[tuple[float, float]] = []
-        scans: list[LaserScan] = []
-
-        def note(msg: Twist, sent: list[tuple[float, float]] = sent) -> None:
-            sent.append((msg.linear.x, msg.angular.z))
-
-        subscribe = simulation.sim.create_subscription
-        subscribe(Twist, "/cmd_vel", note, 10)
-        lidar = subscribe(LaserScan, "/lidar", scans.append, 10, shared=True)
-        if not reads_all:
-            lidar.limit_rate(20.0)
+        drives.append(Watched(simulation, LaserScan, "/lidar"))
+        drives[-1].reader.limit_rate(rate_hz)
         simulation.run()
-        commands.append(sent)
-        readings.append(len(scans))
-    assert len(commands[0]) > 60
-    assert commands[1] == commands[0]
-    assert readings == [pytest.approx(120, abs=3), pytest.approx(300, abs=3)]
+    some, every = drives
+    assert len(some.commands) > 60
+    assert every.commands == some.commands
+    assert len(some.messages) == pytest.approx(120, abs=3)
+    assert len(every.messages) == pytest.approx(300, abs=3)
 
 
 @pytest.mark.long

@@ -16,7 +16,7 @@ from navette.navigation.grids.collision_check import (
     CollisionCheck,
     MovingBody,
 )
-from navette.navigation.grids.compare import count_appeared, count_vanished
+from navette.navigation.grids.compare import MapComparison
 from navette.navigation.grids.distance import distance_field
 from navette.navigation.grids.distance_levels import (
     DistanceLevels,
@@ -151,8 +151,7 @@ __all__ = [
     "placed",
     "cells_in_footprint",
     "checked_cells",
-    "count_appeared",
-    "count_vanished",
+    "MapComparison",
     "CollisionCheck",
     "MovingBody",
     "Obstacles",

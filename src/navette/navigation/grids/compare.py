@@ -1,6 +1,7 @@
 """Comparison of a new grid with a map: obstacles that appeared or vanished."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,63 +19,61 @@ from navette.navigation.grids.windows import CellWindow
 _ANY = -128  # least int8: every cell counts, unknown ones too
 
 
-def count_appeared(
-    remembered: Cells,
-    spec: GridSpec,
-    seen: Cells,
-    seen_spec: GridSpec,
-    *,
-    center: tuple[float, float],
-    radius_m: float,
-) -> int:
-    """Count new obstacles within a square: lethal cells without one on the map.
+class MapComparison(NamedTuple):
+    """A new grid and a map, compared within a square.
 
-    A lethal map cell at the place or beside it is the same obstacle: from another angle
-    the same wall falls into neighbouring cells.
-
-    Args:
+    Attributes:
         remembered: (H, W) int8, the map.
         spec: its geometry.
         seen: (h, w) int8, the new grid.
         seen_spec: its geometry in the map's frame.
         center: (x, y) of the square in the map's frame, m.
         radius_m: half the edge of the square, m.
-
-    Raises:
-        InvalidValueError: a negative radius, or arrays that do not match their specs.
     """
-    cells = grid_array("remembered", remembered, np.int8, spec)
-    new = grid_array("seen", seen, np.int8, seen_spec)
-    window = _window(seen_spec, center, radius_m)
-    map_T_seen = cell_transform(spec, seen_spec)
-    return _unmatched(new, window, cells, map_T_seen, np.int8(_ANY), 1)
 
+    remembered: Cells
+    spec: GridSpec
+    seen: Cells
+    seen_spec: GridSpec
+    center: tuple[float, float]
+    radius_m: float
 
-def count_vanished(
-    remembered: Cells,
-    spec: GridSpec,
-    seen: Cells,
-    seen_spec: GridSpec,
-    *,
-    center: tuple[float, float],
-    radius_m: float,
-    apart_m: float = 0.0,
-) -> int:
-    """Count obstacles of the map within a square whose place was seen free.
+    def count_appeared(self) -> int:
+        """Count new obstacles: lethal cells seen without one on the map.
 
-    A lethal cell seen beside it, or up to ``apart_m`` away, is the same obstacle. Other
-    arguments and errors as in :func:`count_appeared`.
-    """
-    cells = grid_array("remembered", remembered, np.int8, spec)
-    new = grid_array("seen", seen, np.int8, seen_spec)
-    window = _window(spec, center, radius_m)
-    seen_T_map = cell_transform(seen_spec, spec)
-    apart = max(1, math.ceil(apart_m / seen_spec.resolution - 1e-6))
-    return _unmatched(cells, window, new, seen_T_map, np.int8(FREE), apart)
+        A lethal map cell at the place or beside it is the same obstacle: from another
+        angle the same wall falls into neighbouring cells.
+
+        Raises:
+            InvalidValueError: a negative radius, or arrays that do not match their
+                specs.
+        """
+        remembered, seen = self._checked()
+        window = _window(self.seen_spec, self.center, self.radius_m)
+        map_T_seen = cell_transform(self.spec, self.seen_spec)
+        return _unmatched(seen, window, remembered, map_T_seen, np.int8(_ANY), 1)
+
+    def count_vanished(self, apart_m: float = 0.0) -> int:
+        """Count obstacles of the map whose place was seen free.
+
+        A lethal cell seen beside it, or up to ``apart_m`` away, is the same obstacle.
+        Errors as of :meth:`count_appeared`.
+        """
+        remembered, seen = self._checked()
+        window = _window(self.spec, self.center, self.radius_m)
+        seen_T_map = cell_transform(self.seen_spec, self.spec)
+        apart = max(1, math.ceil(apart_m / self.seen_spec.resolution - 1e-6))
+        return _unmatched(remembered, window, seen, seen_T_map, np.int8(FREE), apart)
+
+    def _checked(self) -> tuple[Cells, Cells]:
+        at_least("radius_m", self.radius_m, 0.0)
+        return (
+            grid_array("remembered", self.remembered, np.int8, self.spec),
+            grid_array("seen", self.seen, np.int8, self.seen_spec),
+        )
 
 
 def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> CellWindow:
-    at_least("radius_m", radius_m, 0.0)
     row, column = spec.cell_of(*center)
     reach = int(radius_m / spec.resolution)
     return CellWindow(

@@ -44,11 +44,9 @@ class FusionGate:
             return False
         if now_ns - self._last_ns < round(self.params.change_period_s * 1e9):
             return False
-        few = self.params.change_cells
-        return (
-            memory.appeared(costmap) >= few
-            or memory.vanished(costmap, _BESIDE_M) >= few
-        )
+        few, compared = self.params.change_cells, memory.compared(costmap)
+        appeared = compared.count_appeared()
+        return appeared >= few or compared.count_vanished(_BESIDE_M) >= few
 
     def on_timer(self, newest: PlacedCostmap, memory: MapMemory) -> bool:
         """Return whether to fuse the newest costmap on the timer."""
@@ -67,7 +65,8 @@ class FusionGate:
             return True
         if not self.params.fuse_on_change:
             return False
-        return memory.vanished(newest) >= self.params.change_cells
+        vanished = memory.compared(newest).count_vanished()
+        return vanished >= self.params.change_cells
 
     def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
         """Record that ``costmap`` was fused."""

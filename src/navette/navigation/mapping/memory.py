@@ -1,10 +1,8 @@
 """The map: all costmaps so far, fused."""
 
 import math
-from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -18,14 +16,13 @@ from navette.navigation.grids import (
     UNKNOWN,
     CellWindow,
     GridSpec,
+    MapComparison,
     MarkedCells,
     RowSpans,
     SparseGrid,
     SquareRegion,
     accumulate,
     cells_in_footprint,
-    count_appeared,
-    count_vanished,
     mark_points,
     merge,
     padded,
@@ -273,25 +270,15 @@ class MapMemory:
         """
         return self._update_marked().points
 
-    def appeared(self, costmap: PlacedCostmap) -> int:
-        """Count obstacle cells near the robot that are new to the map."""
-        return self._count(count_appeared, costmap)
-
-    def vanished(self, costmap: PlacedCostmap, apart_m: float = 0.0) -> int:
-        """Count obstacle cells of the map near the robot that are seen free.
-
-        ``apart_m``: from each obstacle that is seen.
-        """
-        return self._count(partial(count_vanished, apart_m=apart_m), costmap)
-
-    def _count(self, count: Callable[..., int], costmap: PlacedCostmap) -> int:
-        return count(
+    def compared(self, costmap: PlacedCostmap) -> MapComparison:
+        """Return the comparison of a costmap with the map near the robot."""
+        return MapComparison(
             self._cells,
             self.spec,
             costmap.cells,
             costmap.spec,
-            center=costmap.sensor,
-            radius_m=self.params.change_range_m,
+            costmap.sensor,
+            self.params.change_range_m,
         )
 
     def warm_up(self) -> None:
@@ -307,7 +294,7 @@ class MapMemory:
         costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0, hits=hits)
         trial.fuse(costmap)
         trial.fuse(costmap)  # which finds marked cells
-        trial.appeared(costmap)
+        trial.compared(costmap).count_appeared()
 
     def _initial_spec(self) -> GridSpec:
         params = self.params

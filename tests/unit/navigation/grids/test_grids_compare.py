@@ -7,8 +7,7 @@ from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.grids import (
     GridSpec,
-    count_appeared,
-    count_vanished,
+    MapComparison,
     placed,
 )
 
@@ -27,9 +26,10 @@ class Changes(NamedTuple):
 
 
 def changes(remembered, seen, pose=ORIGIN, radius=1.5) -> Changes:
-    grids = remembered, MAP, seen, placed(SEEN, pose)
-    square = {"center": (pose.x, pose.y), "radius_m": radius}
-    return Changes(count_appeared(*grids, **square), count_vanished(*grids, **square))
+    compared = MapComparison(
+        remembered, MAP, seen, placed(SEEN, pose), (pose.x, pose.y), radius
+    )
+    return Changes(compared.count_appeared(), compared.count_vanished())
 
 
 def test_equal_grids_do_not_contradict() -> None:
@@ -66,10 +66,8 @@ def test_what_vanished_near_an_obstacle_may_count_as_a_part_of_it(
     remembered, seen = free(MAP), free(SEEN)
     remembered[38:42, 55] = 100
     seen[18:22, 28] = 100  # 0.3 m behind
-    where = {"center": ORIGIN[:2], "radius_m": 1.5}
-    assert count_vanished(remembered, MAP, seen, SEEN, **where, apart_m=apart_m) == (
-        count
-    )
+    compared = MapComparison(remembered, MAP, seen, SEEN, (0.0, 0.0), 1.5)
+    assert compared.count_vanished(apart_m) == count
 
 
 def test_only_cells_within_the_radius_count() -> None:
