@@ -394,6 +394,7 @@ class EventLoop:
         until_ns, done, limit, stop = end
         count = 0
         is_late = False
+        is_fair = False  # all events that were ready have run since
         self._watch_clock()
         set_back_ns = self._set_back_ns
         while not self._closed:
@@ -401,11 +402,14 @@ class EventLoop:
             if stop is not None and stop():
                 self._attention = True  # for the runs around this one
                 return
-            self._collect()
+            self._collect(first=is_fair)
             if until_ns is not None and self._set_back_ns != set_back_ns:
                 until_ns += self._set_back_ns - set_back_ns
                 set_back_ns = self._set_back_ns
-            count += self._run_ready(done, None if limit is None else limit - count)
+            present = len(self.ready)
+            ran = self._run_ready(done, None if limit is None else limit - count)
+            is_fair = ran >= present and not self.clock.is_virtual
+            count += ran
             if done is not None and done():
                 return
             if limit is not None and count >= limit:
@@ -421,16 +425,25 @@ class EventLoop:
             if not self._advance(until_ns):
                 return
 
-    def _collect(self) -> None:
-        """Move due events to ``ready``; run the calls of other threads."""
+    def _collect(self, *, first: bool = False) -> None:
+        """Move due events to ``ready``; run the calls of other threads.
+
+        With ``first`` due events come before those that are ready, as in rclpy: a
+        timer that became due during a callback does not wait for all its messages.
+        """
         now = self._watch_clock()
         heap = self._heap
         if heap and heap[0][0] <= now:
+            due = deque[Any]()
             with self._lock:
                 while heap and heap[0][0] <= now:
                     _, token, entity = heapq.heappop(heap)
                     if entity.token == token:
-                        self.ready.append(entity)
+                        due.append(entity)
+            if first:
+                self.ready.extendleft(reversed(due))
+            else:
+                self.ready.extend(due)
         self._run_inbox()
 
     def _run_inbox(self) -> None:
