@@ -9,6 +9,9 @@ from navette.viewer.large_grid import Payload
 from navette.viewer.session import Watch
 
 _MAX_QUEUED = 64 * 2**20  # bytes
+# Time between deliveries. Each wake-up of the loop's thread takes the interpreter from
+# the executor's, which then waits for it, up to 5 ms.
+_PERIOD_S = 0.02
 
 Offer = tuple[Watch, int, Payload]
 """A message for the clients of a watch: watch, stamp in ns, payload."""
@@ -20,8 +23,9 @@ DeliverOffers = Callable[[Iterable[Offer]], None]
 class OfferQueue:
     """Accepts messages from any thread and delivers them on the loop's; never blocks.
 
-    At most one wake-up of the loop is scheduled; when more than ``_MAX_QUEUED`` bytes
-    are queued, the oldest messages are dropped.
+    The loop is woken up for the first message only, then looks for more every
+    ``_PERIOD_S`` until there are none. When more than ``_MAX_QUEUED`` bytes are queued,
+    the oldest messages are dropped.
     """
 
     def __init__(
@@ -49,5 +53,7 @@ class OfferQueue:
         with self._lock:
             batch, self._queued = self._queued, deque()
             self._size = 0
-            self._scheduled = False
-        self._deliver(batch)
+            self._scheduled = bool(batch)
+        if batch:
+            self._loop.call_later(_PERIOD_S, self._run)
+            self._deliver(batch)
