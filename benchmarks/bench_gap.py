@@ -9,8 +9,10 @@ the same machine. A gap is the time between two commands at the simulated wheels
 first of which moves the robot; nominal are 50 ms. A robot that stands at its goal gets
 two zeros a second.
 
-Other programs on the machine lengthen the gaps. *Work* is the CPU time of the event
-loop's thread between two commands: the gap on a machine with a free core.
+While Chromium starts, its processes occupy all cores: gaps of the first five seconds
+are given on their own. Other programs on the machine lengthen the gaps, too. *Work* is
+the CPU time of the event loop's thread between two commands: the gap on a machine with
+a free core.
 """
 
 import argparse
@@ -25,6 +27,7 @@ from typing import Any
 import numpy as np
 from hall import ends, hall
 from harness import Benchmark, Figure
+from numpy.typing import NDArray
 
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.navigation.stack import RunOptions
@@ -33,6 +36,7 @@ from navette.runtime.clock import SystemClock
 
 SIZE_M = 200
 LIMIT_MS = 100.0
+BROWSER_STARTS_S = 5.0
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SWITCHES = (
     "--headless=new",
@@ -44,8 +48,11 @@ SWITCHES = (
 )
 
 
-def gaps_ms(seconds: float, browser: str) -> tuple[list[float], list[float]]:
-    """Drive with a page open; return the times between commands, and the work."""
+def measured(seconds: float, browser: str) -> NDArray[np.float64]:
+    """Drive with a page open; return (N, 3) time since the start in s, gap, work in ms.
+
+    Gap and work are those between a command that moves the robot and the next one.
+    """
     start, goal = ends(SIZE_M)
     options = RunOptions(robot="jackal", start=start, goals=(goal,), port=0)
     simulation = Simulation(options, scene=hall(SIZE_M), clock=SystemClock())
@@ -71,8 +78,9 @@ def gaps_ms(seconds: float, browser: str) -> tuple[list[float], list[float]]:
             simulation.close()
             page.terminate()
             page.wait()
-    steps = 1e3 * np.diff(np.array(arrived), axis=0)[np.array(drives[:-1])]
-    return steps[:, 0].tolist(), steps[:, 1].tolist()
+    times = np.array(arrived)
+    since = times[:-1, :1] - times[0, 0]
+    return np.hstack([since, 1e3 * np.diff(times, axis=0)])[np.array(drives[:-1])]
 
 
 def main() -> None:
@@ -83,17 +91,21 @@ def main() -> None:
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
         sys.exit("bench_gap: no Chromium is installed")
-    gaps, work = gaps_ms(options.seconds, browser)
+    steps = measured(options.seconds, browser)
+    starts = steps[:, 0] < BROWSER_STARTS_S
+    _, gaps, work = steps[~starts].T
     found: dict[str, Any] = {
-        "longest": max(gaps),
-        "99.9 %": float(np.percentile(gaps, 99.9)),
-        "median": float(np.median(gaps)),
-        "longest work": max(work),
+        "longest": gaps.max(),
+        "99.9 %": np.percentile(gaps, 99.9),
+        "median": np.median(gaps),
+        "longest work": work.max(),
+        "first 5 s": steps[starts, 1].max(),
     }
     bench = Benchmark("command gap", __doc__)
     for name, value in found.items():
         limit = LIMIT_MS if name.startswith("longest") else None
-        figure = Figure(f"Jackal, {SIZE_M} m, page open: {name}", value, "ms", limit)
+        title = f"Jackal, {SIZE_M} m, page open: {name}"
+        figure = Figure(title, float(value), "ms", limit)
         bench.figure(lambda figure=figure: figure)
     bench.run()
     if options.json:
