@@ -141,7 +141,7 @@ class Mapper:
         self._run_callbacks()
 
     def _run_callbacks(self) -> None:
-        """Run those that are ready: one of them publishes the whole map."""
+        """Run the ready callbacks: one publishes the whole map."""
         self.graph.run_for(0.0)
 
 

@@ -428,7 +428,7 @@ class EventLoop:
     def _collect(self, *, first: bool = False) -> None:
         """Move due events to ``ready``; run the calls of other threads.
 
-        With ``first`` due events come before those that are ready, as in rclpy: a
+        With ``first`` due events come before the ready ones, as in rclpy: a
         timer that became due during a callback does not wait for all its messages.
         """
         now = self._watch_clock()
