@@ -394,7 +394,7 @@ class EventLoop:
         until_ns, done, limit, stop = end
         count = 0
         is_late = False
-        is_fair = False  # all events that were ready have run since
+        left: int | None = None  # of the last batch; None: due events are the last
         self._watch_clock()
         set_back_ns = self._set_back_ns
         while not self._closed:
@@ -402,13 +402,14 @@ class EventLoop:
             if stop is not None and stop():
                 self._attention = True  # for the runs around this one
                 return
-            self._collect(first=is_fair)
+            self._collect(after=left)
             if until_ns is not None and self._set_back_ns != set_back_ns:
                 until_ns += self._set_back_ns - set_back_ns
                 set_back_ns = self._set_back_ns
             present = len(self.ready)
             ran = self._run_ready(done, None if limit is None else limit - count)
-            is_fair = ran >= present and not self.clock.is_virtual
+            is_ordered = self.clock.is_virtual or limit is not None
+            left = None if is_ordered else present - ran
             count += ran
             if done is not None and done():
                 return
@@ -425,11 +426,11 @@ class EventLoop:
             if not self._advance(until_ns):
                 return
 
-    def _collect(self, *, first: bool = False) -> None:
-        """Move due events to ``ready``; run the calls of other threads.
+    def _collect(self, *, after: int | None = None) -> None:
+        """Move due events to ``ready``, behind the first ``after`` events or all.
 
-        With ``first`` due events come before the ready ones, as in rclpy: a
-        timer that became due during a callback does not wait for all its messages.
+        As in rclpy, a timer that became due during a callback does not wait for all
+        messages of that callback. Also runs the calls of other threads.
         """
         now = self._watch_clock()
         heap = self._heap
@@ -440,10 +441,10 @@ class EventLoop:
                     _, token, entity = heapq.heappop(heap)
                     if entity.token == token:
                         due.append(entity)
-            if first:
-                self.ready.extendleft(reversed(due))
-            else:
+            if after is None:
                 self.ready.extend(due)
+            else:
+                _insert(due, self.ready, min(after, len(self.ready)))
         self._run_inbox()
 
     def _run_inbox(self) -> None:
@@ -588,3 +589,9 @@ class EventLoop:
         node, source = origin
         named = CallbackError.of(node or "(none)", source, self.clock.now_ns, error)
         raise named from error
+
+
+def _insert(due: "deque[Any]", ready: "deque[Any]", index: int) -> None:
+    ready.rotate(-index)
+    ready.extendleft(reversed(due))
+    ready.rotate(index)

@@ -103,6 +103,23 @@ def test_a_timer_that_is_always_due_does_not_stop_the_messages() -> None:
     assert order.count("message") == 3
 
 
+def test_a_due_timer_runs_behind_what_was_ready_when_a_batch_was_interrupted() -> None:
+    clock, order = _Watch(), []
+    loop = EventLoop(clock)
+
+    def map_arrives() -> None:
+        order.append("map")
+        clock.time_ns += 20
+        loop.call_soon(lambda: order.append("reader of the map"))
+        loop.wake()
+
+    loop.call_at(10, lambda: order.append("command"))
+    loop.call_soon(map_arrives)
+    loop.call_soon(lambda: order.append("ready before"))
+    loop.run(done=lambda: len(order) == 4)
+    assert order == ["map", "ready before", "command", "reader of the map"]
+
+
 def test_a_run_of_one_event_takes_them_in_turn_with_the_system_clock() -> None:
     clock, order = _Watch(), []
     loop = EventLoop(clock)
