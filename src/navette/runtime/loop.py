@@ -394,7 +394,7 @@ class EventLoop:
         until_ns, done, limit, stop = end
         count = 0
         is_late = False
-        left: int | None = None  # of the last batch; None: due events are the last
+        is_fair = False  # not only due events have run, unless no other was ready
         self._watch_clock()
         set_back_ns = self._set_back_ns
         while not self._closed:
@@ -402,14 +402,14 @@ class EventLoop:
             if stop is not None and stop():
                 self._attention = True  # for the runs around this one
                 return
-            self._collect(after=left)
+            due = self._collect(first=is_fair)
             if until_ns is not None and self._set_back_ns != set_back_ns:
                 until_ns += self._set_back_ns - set_back_ns
                 set_back_ns = self._set_back_ns
-            present = len(self.ready)
+            ready = len(self.ready)
             ran = self._run_ready(done, None if limit is None else limit - count)
             is_ordered = self.clock.is_virtual or limit is not None
-            left = None if is_ordered else present - ran
+            is_fair = not is_ordered and (ran > due or ran == ready)
             count += ran
             if done is not None and done():
                 return
@@ -426,26 +426,27 @@ class EventLoop:
             if not self._advance(until_ns):
                 return
 
-    def _collect(self, *, after: int | None = None) -> None:
-        """Move due events to ``ready``, behind the first ``after`` events or all.
+    def _collect(self, *, first: bool = False) -> int:
+        """Move due events to ``ready`` and return their number.
 
-        As in rclpy, a timer that became due during a callback does not wait for all
-        messages of that callback. Also runs the calls of other threads.
+        With ``first`` before the events that are ready, as in rclpy: a timer that is
+        due does not wait for messages. Also runs the calls of other threads.
         """
         now = self._watch_clock()
         heap = self._heap
+        due: list[Any] = []
         if heap and heap[0][0] <= now:
-            due = deque[Any]()
             with self._lock:
                 while heap and heap[0][0] <= now:
                     _, token, entity = heapq.heappop(heap)
                     if entity.token == token:
                         due.append(entity)
-            if after is None:
-                self.ready.extend(due)
+            if first:
+                self.ready.extendleft(reversed(due))
             else:
-                _insert(due, self.ready, min(after, len(self.ready)))
+                self.ready.extend(due)
         self._run_inbox()
+        return len(due)
 
     def _run_inbox(self) -> None:
         while self._inbox:
@@ -589,9 +590,3 @@ class EventLoop:
         node, source = origin
         named = CallbackError.of(node or "(none)", source, self.clock.now_ns, error)
         raise named from error
-
-
-def _insert(due: "deque[Any]", ready: "deque[Any]", index: int) -> None:
-    ready.rotate(-index)
-    ready.extendleft(reversed(due))
-    ready.rotate(index)

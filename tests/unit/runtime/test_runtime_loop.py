@@ -103,7 +103,7 @@ def test_a_timer_that_is_always_due_does_not_stop_the_messages() -> None:
     assert order.count("message") == 3
 
 
-def test_a_due_timer_runs_behind_what_was_ready_when_a_batch_was_interrupted() -> None:
+def test_a_due_timer_overtakes_the_rest_of_a_batch_that_was_interrupted() -> None:
     clock, order = _Watch(), []
     loop = EventLoop(clock)
 
@@ -117,7 +117,7 @@ def test_a_due_timer_runs_behind_what_was_ready_when_a_batch_was_interrupted() -
     loop.call_soon(map_arrives)
     loop.call_soon(lambda: order.append("ready before"))
     loop.run(done=lambda: len(order) == 4)
-    assert order == ["map", "ready before", "command", "reader of the map"]
+    assert order == ["map", "command", "ready before", "reader of the map"]
 
 
 def test_a_run_of_one_event_takes_them_in_turn_with_the_system_clock() -> None:
