@@ -68,7 +68,6 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         WithMessageInfo = 1
 
     __slots__ = (
-        "_add_ready",
         "_callback",
         "_direct_limit",
         "_entities",
@@ -77,6 +76,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         "_loop",
         "_plain",
         "_queue",
+        "_ready",
         "_received",
         "_takes_info",
         "_watch",
@@ -121,7 +121,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self._filter_options = ContentFilterOptions("", [])
         self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
         self._loop = entities.context.loop
-        self._add_ready = self._loop.ready.append
+        self._ready = self._loop.ready
         self._received = 0
         self._entities = entities
         self._watch = watch
@@ -156,13 +156,6 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         """
         for port in self.ports:
             port.most_hz = most_hz
-
-    def overtake(self) -> None:
-        """Run the callback before those of other entities that are ready.
-
-        For short callbacks that must not wait for long ones, such as commands.
-        """
-        self._add_ready = self._loop.ready.appendleft
 
     @property
     def is_cft_enabled(self) -> bool:
@@ -200,7 +193,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         queue = self._queue
         if len(queue) < self._direct_limit:
             queue.append(item)
-            self._add_ready(self)
+            self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
         elif self._filter is None or self._passes(item[0], self._filter):
@@ -214,7 +207,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         # A driving thread may have taken a sample just before. Then the queue was not
         # full and this sample needs an event. A surplus event has no effect.
         if not is_full or self._loop.is_driven_elsewhere:
-            self._add_ready(self)
+            self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
 

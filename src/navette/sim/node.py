@@ -62,19 +62,16 @@ class SimNode(StageNode):
             topics.CMD_VEL,
             "commanded velocity; clamped to the limits, zero after the timeout",
             other_types=("geometry_msgs/msg/TwistStamped",),
-            overtakes=True,
             callback="on_cmd_vel",
         ),
         Input.of(
             topics.DRIVE,
             "speed and steering angle of an Ackermann drive, beside /cmd_vel",
-            overtakes=True,
             callback="on_drive",
         ),
         Input.of(
             topics.EMERGENCY_STOP,
             "true stops the robot, whatever is commanded",
-            overtakes=True,
             callback="on_emergency_stop",
         ),
         Input.of(

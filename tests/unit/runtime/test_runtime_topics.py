@@ -318,25 +318,6 @@ def test_endless_ping_pong_does_not_starve_timers(
     assert hits == 1000
 
 
-def test_messages_of_a_subscription_may_overtake_others(graph: GraphHarness) -> None:
-    order: list[str] = []
-    node = graph.add(Node("listener", context=graph.context))
-    node.create_subscription(String, "maps", lambda msg: order.append(msg.data), 10)
-    commands = node.create_subscription(
-        String, "commands", lambda msg: order.append(msg.data), 10
-    )
-    commands.overtake()
-    for topic, text in (
-        ("maps", "map"),
-        ("commands", "1"),
-        ("commands", "2"),
-        ("maps", "next map"),
-    ):
-        graph.publish(topic, String(data=text))
-    graph.run_for(0.0)
-    assert order == ["1", "2", "map", "next map"]
-
-
 def test_shared_subscriptions_receive_the_object_that_is_handed_over(
     graph: GraphHarness,
 ) -> None:

@@ -60,7 +60,6 @@ def _commands(
         meaning,
         other_types=(_STAMPED,),
         checks_contents=checks_contents,
-        overtakes=True,
         callback="on_command",
     )
 
@@ -91,7 +90,6 @@ class ArbiterNode(StageNode):
             topics.DRIVE,
             "commands of programs that steer a car beside the arbiter (`topics.drive`)",
             checks_contents=False,
-            overtakes=True,
             callback="on_command",
         ),
         _commands(
@@ -108,7 +106,6 @@ class ArbiterNode(StageNode):
         Input.of(
             topics.EMERGENCY_STOP,
             "true engages the emergency stop; false has no effect",
-            overtakes=True,
             callback="on_emergency_stop",
         ),
         Input.of(

@@ -99,9 +99,6 @@ class Input(_Topic):
     #: The callback gets the last message of each period, by the stamps of the headers;
     #: infinite = every message. All count as arrivals.
     most_hz: float = math.inf
-    #: Whether the callback runs before others that are ready, as for a command: it is
-    #: not to wait until a large map has been processed.
-    overtakes: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -286,8 +283,6 @@ class StageNode(Node):
             if declared.most_hz < math.inf:
                 subscription.limit_rate(declared.most_hz)
                 self._limited[declared.topic].append(subscription)
-            if declared.overtakes:
-                subscription.overtake()
             subscription.on_undecodable = partial(
                 self._dropped.add, declared.topic, undecodable
             )

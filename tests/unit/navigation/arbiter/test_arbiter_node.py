@@ -7,7 +7,6 @@ import pytest
 from navette.errors import ParameterError
 from navette.msgs.ackermann_msgs.msg import AckermannDriveStamped
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
-from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.navigation.arbiter.node import ArbiterNode
 from navette.runtime import Parameter
@@ -71,22 +70,6 @@ def test_the_operator_takes_over_in_the_same_instant(bench: Bench) -> None:
         bench.value("masked_topics") == "/cmd_vel,/drive,/cmd_vel_reflex,/cmd_vel_nav"
     )
     assert bench.send("/cmd_vel_nav", twist(0.3)) == []
-
-
-def test_commands_and_stops_overtake_the_maps_that_wait(bench: Bench) -> None:
-    node, order = bench.graph.node, list[object]()
-    node.create_subscription(OccupancyGrid, "/map", lambda _: order.append("map"), 10)
-    wheels = node.create_subscription(
-        Twist, "/cmd_vel", lambda msg: order.append(msg.linear.x), 10
-    )
-    wheels.overtake()
-    for topic, msg in (
-        ("/cmd_vel_nav", twist(0.3)),
-        ("/emergency_stop", Bool(data=True)),
-    ):
-        bench.graph.publish("/map", OccupancyGrid())
-        bench.send(topic, msg)
-    assert order == [0.3, "map", 0.0, "map"]
 
 
 @pytest.mark.parametrize("topic", ["/cmd_vel_nav", "/cmd_vel_teleop"])
