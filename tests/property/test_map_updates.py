@@ -122,27 +122,19 @@ class Mapper:
     def clear(self) -> None:
         x, y = self._random.uniform(-3.0, 3.0, 2).tolist()
         self.node.clear_costmap(SquareRegion(x, y, 2.0, False))
-        self._run_callbacks()
 
     def clear_all(self) -> None:
         self.node.clear_costmap(None)
-        self._run_callbacks()
 
     def reset(self) -> None:
         self.graph.run_for(0.001)
         self.node.on_time_jump()
-        self._run_callbacks()
 
     def load(self) -> None:
         shape = tuple(self._random.integers(4, 20, 2).tolist())
         cells = self._random.choice(np.array([-1, 0, 100], np.int8), shape)
         spec = GridSpec(EDGE_M, shape[1], shape[0], Pose2(-2.0, -2.0, 0.0))
         self.node.load_map(cells, spec)
-        self._run_callbacks()
-
-    def _run_callbacks(self) -> None:
-        """Run the ready callbacks: one publishes the whole map."""
-        self.graph.run_for(0.0)
 
 
 class Reader:

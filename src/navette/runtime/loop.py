@@ -394,7 +394,6 @@ class EventLoop:
         until_ns, done, limit, stop = end
         count = 0
         is_late = False
-        is_fair = False  # not only due events have run, unless no other was ready
         self._watch_clock()
         set_back_ns = self._set_back_ns
         while not self._closed:
@@ -402,15 +401,11 @@ class EventLoop:
             if stop is not None and stop():
                 self._attention = True  # for the runs around this one
                 return
-            due = self._collect(first=is_fair)
+            self._collect()
             if until_ns is not None and self._set_back_ns != set_back_ns:
                 until_ns += self._set_back_ns - set_back_ns
                 set_back_ns = self._set_back_ns
-            ready = len(self.ready)
-            ran = self._run_ready(done, None if limit is None else limit - count)
-            is_ordered = self.clock.is_virtual or limit is not None
-            is_fair = not is_ordered and (ran > due or ran == ready)
-            count += ran
+            count += self._run_ready(done, None if limit is None else limit - count)
             if done is not None and done():
                 return
             if limit is not None and count >= limit:
@@ -426,27 +421,17 @@ class EventLoop:
             if not self._advance(until_ns):
                 return
 
-    def _collect(self, *, first: bool = False) -> int:
-        """Move due events to ``ready`` and return their number.
-
-        With ``first`` before the events that are ready, as in rclpy: a timer that is
-        due does not wait for messages. Also runs the calls of other threads.
-        """
+    def _collect(self) -> None:
+        """Move due events to ``ready``; run the calls of other threads."""
         now = self._watch_clock()
         heap = self._heap
-        due: list[Any] = []
         if heap and heap[0][0] <= now:
             with self._lock:
                 while heap and heap[0][0] <= now:
                     _, token, entity = heapq.heappop(heap)
                     if entity.token == token:
-                        due.append(entity)
-            if first:
-                self.ready.extendleft(reversed(due))
-            else:
-                self.ready.extend(due)
+                        self.ready.append(entity)
         self._run_inbox()
-        return len(due)
 
     def _run_inbox(self) -> None:
         while self._inbox:

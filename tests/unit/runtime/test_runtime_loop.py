@@ -8,14 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from navette.errors import CallbackError, MessageError
-from navette.runtime import (
-    Context,
-    Executor,
-    Future,
-    Node,
-    SystemClock,
-    VirtualClock,
-)
+from navette.runtime import Context, Executor, Future, Node, VirtualClock
 from navette.runtime.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
@@ -51,89 +44,6 @@ def test_an_event_for_the_current_time_runs_after_the_ready_events(
     loop.call_at(10, lambda: order.append("second"))
     loop.run()
     assert order == ["first", "second", "made at 10 for 10"]
-
-
-class _Watch(SystemClock):
-    """A system clock that advances during callbacks only."""
-
-    def __init__(self) -> None:
-        self.time_ns = 0
-
-    @property
-    def now_ns(self) -> int:
-        return self.time_ns
-
-
-def test_a_timer_that_is_due_overtakes_messages_with_the_system_clock() -> None:
-    clock, order = _Watch(), []
-    loop = EventLoop(clock)
-
-    def take(name: str, time_ns: int) -> None:
-        order.append(name)
-        clock.time_ns += time_ns
-
-    def map_arrives() -> None:
-        take("map", 20)
-        loop.call_soon(lambda: take("first reader", 20))
-        loop.call_soon(lambda: take("second reader", 20))
-
-    loop.call_at(10, lambda: take("command", 1))
-    loop.call_at(30, lambda: take("late command", 1))
-    loop.call_soon(map_arrives)
-    loop.run(done=lambda: len(order) == 5)
-    # The second command was not due when the readers were ready.
-    expected = ["map", "command", "first reader", "second reader", "late command"]
-    assert order == expected
-
-
-def test_a_timer_that_is_always_due_does_not_stop_the_messages() -> None:
-    clock, order = _Watch(), []
-    loop = EventLoop(clock)
-
-    def timer() -> None:
-        order.append("timer")
-        clock.time_ns += 20
-        loop.call_at(clock.time_ns, timer)
-        loop.wake()  # as messages of other threads do: it ends the batch
-
-    loop.call_at(0, timer)
-    for _ in range(3):
-        loop.call_soon(lambda: order.append("message"))
-    loop.run(done=lambda: len(order) == 12)
-    assert order.count("message") == 3
-
-
-def test_a_due_timer_overtakes_the_rest_of_a_batch_that_was_interrupted() -> None:
-    clock, order = _Watch(), []
-    loop = EventLoop(clock)
-
-    def map_arrives() -> None:
-        order.append("map")
-        clock.time_ns += 20
-        loop.call_soon(lambda: order.append("reader of the map"))
-        loop.wake()
-
-    loop.call_at(10, lambda: order.append("command"))
-    loop.call_soon(map_arrives)
-    loop.call_soon(lambda: order.append("ready before"))
-    loop.run(done=lambda: len(order) == 4)
-    assert order == ["map", "command", "ready before", "reader of the map"]
-
-
-def test_a_run_of_one_event_takes_them_in_turn_with_the_system_clock() -> None:
-    clock, order = _Watch(), []
-    loop = EventLoop(clock)
-
-    def timer() -> None:
-        order.append("timer")
-        clock.time_ns += 20
-        loop.call_at(clock.time_ns, timer)
-
-    loop.call_at(0, timer)
-    loop.call_soon(lambda: order.append("message"))
-    for _ in range(4):
-        loop.run(limit=1)
-    assert "message" in order[:2]
 
 
 def test_run_until_includes_the_end_time(loop: EventLoop) -> None:

@@ -146,8 +146,6 @@ class MapMemoryNode(StageNode):
         self._has_nav2_reader = False
         self._is_starting = True
         self._whole_maps = WholeMaps()
-        # A callback of its own: a large map takes long, and commands run before it.
-        self._whole = self.create_guard_condition(self._publish_whole)
         self._map_ns = -1  # stamp of the newest map
         self._is_outside = False  # the robot at the newest costmap
         self._tracker = self._new_tracker()
@@ -406,10 +404,8 @@ class MapMemoryNode(StageNode):
         self._map_ns, self._published = stamp_ns, None
         self._publish_update(window)
         is_served = not window.is_empty and self._subscribers() <= self._served
-        if self._is_starting:
+        if self.params.always_send_full_map or not is_served:
             self._publish_whole()
-        elif self.params.always_send_full_map or not is_served:
-            self._whole.trigger()
 
     def _publish_update(self, window: CellWindow) -> None:
         """Publish the changed part before the whole map of the same stamp.
