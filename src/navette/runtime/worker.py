@@ -55,15 +55,17 @@ class Worker:
         future = self._threads.submit(compute)
         self._last = future
 
-        def end() -> None:
+        # Gets the future: with a reference to it, what the computation used would be
+        # kept, in a cycle, until the garbage collector finds it.
+        def end(done: Future[T]) -> None:
             if not self._closed and not is_dropped():
-                finish(future.result())
+                finish(done.result())
 
         if clock.is_virtual:
             future.add_done_callback(lambda _: self._loop.wake())
             self._loop.run_calls(lambda: future.done() or is_dropped())
             if future.done():
-                end()
+                end(future)
         else:
             self._call_when_done(future, end)
 
@@ -82,9 +84,13 @@ class Worker:
         self.run(caught, lambda end: end())
         return result
 
-    def _call_when_done(self, future: "Future[T]", end: Callable[[], None]) -> None:
+    def _call_when_done(
+        self, future: "Future[T]", end: Callable[["Future[T]"], None]
+    ) -> None:
         future.add_done_callback(
-            lambda _: self._loop.call_soon_threadsafe(end, "worker", self._name)
+            lambda done: self._loop.call_soon_threadsafe(
+                functools.partial(end, done), "worker", self._name
+            )
         )
 
     def close(self) -> None:

@@ -1,6 +1,8 @@
 """Computations beside the event loop, by the kind of clock."""
 
+import gc
 import threading
+import weakref
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -48,6 +50,28 @@ def test_the_result_arrives_in_the_loop(graph: Graph) -> None:
     graph.run(lambda: graph.worker.run(lambda: 7, finish), lambda: bool(graph.results))
     assert graph.results == [7]
     assert threads == [threading.get_ident()]
+
+
+def test_what_a_computation_used_is_freed_without_the_collector(graph: Graph) -> None:
+    """The arrays of a plan may be large."""
+
+    class Used:
+        pass
+
+    kept: list[weakref.ref[Used]] = []
+
+    def start() -> None:
+        used = Used()
+        kept.append(weakref.ref(used))
+        graph.worker.run(lambda: used, lambda _: graph.results.append(1))
+
+    gc.disable()
+    try:
+        for count in (1, 2, 3):
+            graph.run(start, lambda count=count: len(graph.results) == count)
+        assert [used() for used in kept[:-1]] == [None, None]
+    finally:
+        gc.enable()
 
 
 def test_a_failed_computation_fails_in_the_loop(graph: Graph) -> None:

@@ -48,6 +48,7 @@ from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import (
     grid_from_message,
     grid_to_message,
+    resize_grid_message,
     update_grid_message,
     window_from_message,
     window_to_message,
@@ -69,9 +70,15 @@ from navette.navigation.grids.obstacles import (
 from navette.navigation.grids.own_cells import checked_cells
 from navette.navigation.grids.planar_scan import PlanarScan
 from navette.navigation.grids.rays import beam_directions, trace_beams
-from navette.navigation.grids.received_map import MapPart, MapReader, ReceivedMap
+from navette.navigation.grids.received_map import (
+    NO_PART,
+    MapPart,
+    MapReader,
+    ReceivedMap,
+)
 from navette.navigation.grids.regions import SquareRegion
 from navette.navigation.grids.sparse import (
+    GrowthMemory,
     RowSpans,
     SparseGrid,
     copied,
@@ -109,6 +116,7 @@ __all__ = [
     "ReceivedMap",
     "SquareRegion",
     "NO_DISCS",
+    "NO_PART",
     "MovingDiscs",
     "PlanarScan",
     "disc_outlines",
@@ -116,6 +124,7 @@ __all__ = [
     "inside_discs",
     "without_discs",
     "GridSpec",
+    "GrowthMemory",
     "grid_frame",
     "UNKNOWN",
     "FREE",
@@ -171,6 +180,7 @@ __all__ = [
     "cell_points",
     "point_radius",
     "grid_to_message",
+    "resize_grid_message",
     "update_grid_message",
     "window_from_message",
     "window_to_message",

@@ -25,19 +25,34 @@ def grid_to_message(
         InvalidValueError: ``cells`` does not have the spec's shape.
     """
     data = grid_array("cells", cells, np.int8, spec).reshape(-1)
+    info = _geometry(spec)
+    info.map_load_time = time_message(stamp_ns)
+    return OccupancyGrid(header=header(stamp_ns, frame_id), info=info, data=data)
+
+
+def _geometry(spec: GridSpec) -> MapMetaData:
     x, y, z, w = quaternion_from_yaw(spec.origin.yaw)
     origin = Pose(
         position=Point(x=float(spec.origin.x), y=float(spec.origin.y)),
         orientation=Quaternion(x=x, y=y, z=z, w=w),
     )
-    info = MapMetaData(
-        map_load_time=time_message(stamp_ns),
+    return MapMetaData(
         resolution=float(np.float32(spec.resolution)),  # as in a copy
         width=spec.width,
         height=spec.height,
         origin=origin,
     )
-    return OccupancyGrid(header=header(stamp_ns, frame_id), info=info, data=data)
+
+
+def resize_grid_message(msg: OccupancyGrid, spec: GridSpec) -> None:
+    """Change the extent of a message in its memory; its cells are not valid then."""
+    data = msg.data
+    added = spec.width * spec.height - len(data)
+    if added < 0:
+        del data[added:]
+    else:
+        data.frombytes(bytes(added))
+    msg.info = _geometry(spec)
 
 
 def update_grid_message(

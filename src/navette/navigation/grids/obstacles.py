@@ -252,7 +252,9 @@ class ObstacleTracker:
 
 
 def _loses(part: MapPart, cells: Cells, near: CellWindow) -> bool:
-    """Return whether a known cell of a map in a window is unknown in its new part."""
+    """Return whether known cells of a map would be overwritten with unknown ones."""
+    if part.whole is not None:
+        return False  # another array
     down, right = -part.window.first_row, -part.window.first_column
     here = near.shifted(down, right).grown(0, part.cells.shape)
     lost: bool = _has_lost(part.cells, cells, here, down, right)

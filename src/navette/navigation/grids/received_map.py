@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import NamedTuple
 
+import numpy as np
+
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry.messages import stamp_of
 from navette.msgs.map_msgs.msg import OccupancyGridUpdate
@@ -25,6 +27,12 @@ class MapPart(NamedTuple):
 
     cells: Cells
     window: CellWindow
+    whole: Cells | None = None
+    """(H, W) the map with these cells, if it has arrived as a whole, too"""
+
+
+NO_PART = MapPart(np.empty((0, 0), np.int8), NO_CELLS)
+"""Nothing has changed."""
 
 
 class ReceivedMap:
@@ -47,9 +55,12 @@ class ReceivedMap:
         """Change a part; return what has changed."""
         if part is None:
             return NO_CELLS
-        if not self._is_own:
-            self.cells, self._is_own = copied(self.cells), True
-        self.cells[part.window.slices] = part.cells
+        if part.whole is not None:
+            self.cells, self._is_own = part.whole, False
+        elif not part.window.is_empty:
+            if not self._is_own:
+                self.cells, self._is_own = copied(self.cells), True
+            self.cells[part.window.slices] = part.cells
         return part.window
 
 
@@ -73,6 +84,13 @@ class _Update(NamedTuple):
             and self.number == other.number + 1
             and self.stamp_ns > other.stamp_ns
         )
+
+
+class _Whole(NamedTuple):
+    """A whole map as a part of the one before, and its stamp."""
+
+    part: MapPart
+    stamp_ns: int
 
 
 class MapReader:
@@ -99,6 +117,7 @@ class MapReader:
         # The newest ones, without a gap.
         self._updates = deque[_Update](maxlen=_MOST_UPDATES)
         self._is_outdated = False  # updates between the map and these are missing
+        self._next_whole: _Whole | None = None  # that the next updates lead to
 
     @property
     def is_behind(self) -> bool:
@@ -111,6 +130,9 @@ class MapReader:
     def receive_map(self, msg: OccupancyGrid, map_frame: str) -> bool:
         """Replace the map by a whole one, unless the present one is as new.
 
+        A whole map to which updates lead that were not taken yet becomes the
+        :meth:`next_part`: where it differs is known.
+
         Returns:
             Whether the map was replaced.
 
@@ -122,9 +144,34 @@ class MapReader:
         if stamp_ns <= self.stamp_ns and self._later() is not None:
             return False
         with out_of_range():
-            self.map = ReceivedMap(*grid_from_message(msg))
+            cells, spec = grid_from_message(msg)
+        self._next_whole = self._reached(cells, spec, stamp_ns)
+        if self._next_whole is not None:
+            return False
+        self.map = ReceivedMap(cells, spec)
         self.stamp_ns, self._is_outdated = stamp_ns, False
         return True
+
+    def _reached(self, cells: Cells, spec: GridSpec, stamp_ns: int) -> "_Whole | None":
+        """Return a whole map with the part that the next updates change to reach it.
+
+        None: they do not lead to it.
+        """
+        if self.map is None or spec != self.map.spec:
+            return None
+        window = NO_CELLS
+        for each in self._later() or ():
+            if each.is_empty:
+                return None
+            try:
+                changed = window_from_message(each.message, spec)[1]
+            except InvalidValueError:
+                return None
+            window = window.union(changed)
+            if each.stamp_ns == stamp_ns:
+                part = MapPart(cells[window.slices], window, cells)
+                return _Whole(part, stamp_ns)
+        return None
 
     def receive_update(
         self, msg: OccupancyGridUpdate, number: int | None, map_frame: str
@@ -152,6 +199,10 @@ class MapReader:
         Raises:
             InvalidInputError: invalid values; the map is behind.
         """
+        whole, self._next_whole = self._next_whole, None
+        if whole is not None:
+            self.stamp_ns = whole.stamp_ns
+            return whole.part
         later = self._later()
         if self.map is None or not later or later[0].is_empty:
             return None

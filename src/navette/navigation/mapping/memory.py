@@ -16,6 +16,7 @@ from navette.navigation.grids import (
     UNKNOWN,
     CellWindow,
     GridSpec,
+    GrowthMemory,
     MapComparison,
     MarkedCells,
     RowSpans,
@@ -25,7 +26,6 @@ from navette.navigation.grids import (
     cells_in_footprint,
     mark_points,
     merge,
-    padded,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.marked_points import MarkedPoints
@@ -114,6 +114,7 @@ class MapMemory:
         self._written = RowSpans(self.spec.height)  # of the two above
         self._marked = MarkedPoints()
         self._changed: CellWindow | None = None
+        self._cells_memory, self._log_odds_memory = GrowthMemory(), GrowthMemory()
         self._log_odds: NDArray[np.float32] | None = None
         if self.params.fusion == "log_odds":
             self._log_odds = self._evidence_of(self._cells)
@@ -319,14 +320,14 @@ class MapMemory:
         self._changed = None
         self._marked.grow(growth.rows[0], growth.columns[0])
         self.spec = growth.spec
-        self._cells = padded(self._cells, pad, UNKNOWN)
+        self._cells = self._cells_memory.padded(self._cells, pad, UNKNOWN)
         row, column = self._loaded_at
         self._loaded_at = row + pad[0][0], column + pad[1][0]
         self._masks.grow(pad, self._written)
         self._vanished.grow(pad, self._written)
         self._written.grow(pad)
         if self._log_odds is not None:
-            self._log_odds = padded(self._log_odds, pad, np.nan)
+            self._log_odds = self._log_odds_memory.padded(self._log_odds, pad, np.nan)
 
     def _kept(self, costmap: PlacedCostmap, window: CellWindow) -> NDArray[np.int64]:
         """Free the lethal cells whose obstacles vanished.

@@ -9,6 +9,7 @@ from navette.navigation.grids import (
     CellWindow,
     GridSpec,
     grid_to_message,
+    resize_grid_message,
     update_grid_message,
 )
 from navette.navigation.grids.spec import Cells
@@ -35,6 +36,12 @@ class _Kept:
             and sys.getrefcount(self.message.data) <= _UNUSED
         )
 
+    def fit(self, spec: GridSpec) -> None:
+        """Use another extent; a larger one needs memory for what is added only."""
+        if spec != self.spec:
+            resize_grid_message(self.message, spec)
+            self.spec, self.outdated = spec, CellWindow.whole(spec.shape)
+
 
 class WholeMaps:
     """Messages of a map that changes in small parts.
@@ -48,19 +55,18 @@ class WholeMaps:
         self._kept: list[_Kept] = []
 
     def note_change(self, window: CellWindow | None) -> None:
-        """Note which cells changed; None: all of them."""
-        if window is None:
-            self._kept.clear()
-            return
+        """Note which cells changed; None: all of them, and perhaps the extent."""
         for kept in self._kept:
-            kept.outdated = kept.outdated.union(window)
+            changed = CellWindow.whole(kept.spec.shape) if window is None else window
+            kept.outdated = kept.outdated.union(changed)
 
     def message(
         self, cells: Cells, spec: GridSpec, frame_id: str, stamp_ns: int
     ) -> OccupancyGrid:
         """Return the map (H, W) as a message that does not change while it is used."""
         for index, kept in enumerate(self._kept):
-            if kept.spec == spec and kept.is_unused:
+            if kept.is_unused:
+                kept.fit(spec)
                 update_grid_message(
                     kept.message, cells, kept.outdated, frame_id, stamp_ns
                 )

@@ -37,6 +37,7 @@ class MapChange(NamedTuple):
 
     received: ReceivedMap
     part: MapPart | None
+    """None: the whole map, or zones, may be new."""
     hits: NDArray[np.float64]
     zoned: ZonedMap | None
 
@@ -52,8 +53,8 @@ class MapChange(NamedTuple):
             self.received.share()
             if self.zoned is not None:
                 self.zoned.share()
-        changed = self.received.update(self.part)
-        cells = _with_zones(self.received, self.zoned, changed)
+        changed = None if self.part is None else self.received.update(self.part)
+        cells = _with_zones(self.received, self.zoned, changed or NO_CELLS)
         navigator.set_map(NewMap(cells, self.received.spec, self.hits, changed))
 
 
@@ -104,7 +105,11 @@ class MapInputs:
         return self._moving.at(now_ns, _MOVING_TIMEOUT_S)
 
     def change(self, part: MapPart | None) -> MapChange:
-        """Return the change from the map before to the newest; None: all is new."""
+        """Return the change from the map before to the newest.
+
+        Args:
+            part: None if all may be new.
+        """
         assert self._maps.map is not None, "called with a map"
         return MapChange(self._maps.map, part, self._newest_hits(), self._zoned)
 

@@ -98,8 +98,10 @@ class Navigator:
     def _apply_map(self, new: NewMap | None = None) -> None:
         new = self._map if new is None else new
         if new is not None:
-            marked = self._avoided.marked(new.cells, new.spec)
-            self.planner.set_map(new._replace(cells=marked))
+            if self._avoided:
+                marked = self._avoided.marked(new.cells, new.spec)
+                new = new._replace(cells=marked, changed=None)
+            self.planner.set_map(new)
             self._has_map = self._map_changed = True
 
     def avoid_place(self) -> bool:

@@ -35,7 +35,7 @@ class PlanningMap:
 
     def __init__(self, cells: Cells, spec: GridSpec) -> None:
         self.cells, self.spec = cells, spec
-        self._received = cells
+        self._is_own = False  # the array
 
     def receive(
         self, cells: Cells, spec: GridSpec, changed: CellWindow | None = None
@@ -43,18 +43,15 @@ class PlanningMap:
         """Use a newer map; return the cells that may have changed, None if all.
 
         Args:
-            cells: (h, w); if this is the array of the last call, ``changed`` names the
-                cells that are new in it.
+            cells: (h, w), do not write to them except before the next call.
             spec: geometry of ``cells``.
-            changed: may be None, then the maps are compared.
+            changed: the cells that differ from those of the last call; None: not known,
+                the maps are compared.
         """
         offset = _offset(self.spec, spec)
         if offset is None:
             self.__init__(cells, spec)  # type: ignore[misc] # another extent: starts afresh
             return None
-        if cells is not self._received:
-            changed = None
-        self._received = cells
         if cells is self.cells:
             return CellWindow.whole(spec.shape) if changed is None else changed
         rows, columns = offset
@@ -63,8 +60,10 @@ class PlanningMap:
             changed = differences(self.cells[mine.slices], cells)
         here = changed.shifted(rows, columns)
         if mine == CellWindow.whole(self.spec.shape):
-            self.cells = cells
-        else:
+            self.cells, self._is_own = cells, False
+        elif not changed.is_empty:
+            if not self._is_own:
+                self.cells, self._is_own = copied(self.cells), True
             self.cells[here.slices] = cells[changed.slices]
         return NO_CELLS if changed.is_empty else here
 
@@ -90,12 +89,14 @@ class PlanningMap:
             spec.height + sum(rows),
             spec.origin @ shift,
         )
-        self.cells = padded(self.cells, (rows, columns), UNKNOWN)
+        self.cells, self._is_own = padded(self.cells, (rows, columns), UNKNOWN), True
         return True
 
     def copy(self) -> "PlanningMap":
         """Return a map that changes independently."""
-        return PlanningMap(copied(self.cells), self.spec)
+        other = PlanningMap(copied(self.cells), self.spec)
+        other._is_own = True
+        return other
 
 
 def _sides(at: int, size: int, step: int, most: int) -> tuple[int, int] | None:

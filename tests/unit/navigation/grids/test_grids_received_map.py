@@ -7,6 +7,7 @@ from navette.errors import InvalidInputError
 from navette.geometry import Pose2
 from navette.navigation.grids import (
     NO_CELLS,
+    NO_PART,
     CellWindow,
     GridSpec,
     MapPart,
@@ -104,6 +105,51 @@ def test_the_array_of_a_message_is_not_changed() -> None:
     received.share()
     received.update(part)
     assert received.cells is not own
+
+
+def test_a_whole_map_is_used_instead_of_the_updates_to_it(maps: Maps) -> None:
+    """Updates that are not taken at once: what changed is known, and nothing copied."""
+    reader = maps.reader
+    assert reader.map is not None
+    for number in (2, 3):
+        window = CellWindow(0, 1, number - 1, number)
+        cells = np.full((1, number), number, np.int8)
+        update = window_to_message(cells, window, FRAME, number * 10**9)
+        reader.receive_update(update, number, FRAME)
+    cells = np.zeros(SPEC.shape, np.int8)
+    cells[0, :3] = 1, 2, 3
+    whole = grid_to_message(cells, SPEC, FRAME, 3 * 10**9)
+    assert not reader.receive_map(whole, FRAME), "parts lead to it"
+    part = reader.next_part()
+    assert part is not None
+    assert reader.map.update(part) == CellWindow(0, 1, 1, 3)
+    np.testing.assert_array_equal(part.cells, [[2, 3]])
+    assert np.shares_memory(reader.map.cells, np.asarray(whole.data))
+    assert reader.next_part() is None
+    assert maps.newest == 3
+    assert maps.update(4) is not None
+    assert maps.newest == 4
+    assert np.asarray(whole.data)[:4].tolist() == [1, 2, 3, 0]
+
+
+@pytest.mark.parametrize("kind", ["outside", "empty", "larger"])
+def test_a_whole_map_replaces_one_to_which_no_parts_lead(maps: Maps, kind: str) -> None:
+    at = 6 if kind == "outside" else 1
+    window = NO_CELLS if kind == "empty" else CellWindow(0, 1, at, at + 1)
+    update = window_to_message(np.zeros((1, 7), np.int8), window, FRAME, 2 * 10**9)
+    maps.reader.receive_update(update, 2, FRAME)
+    spec = GridSpec(0.5, 8, 4, SPEC.origin) if kind == "larger" else SPEC
+    assert maps.whole(2, spec=spec)
+    assert maps.reader.map is not None
+    assert maps.reader.map.spec == spec
+    assert maps.newest == 2
+
+
+def test_no_part_changes_nothing() -> None:
+    cells = np.zeros(SPEC.shape, np.int8)
+    received = ReceivedMap(cells, SPEC)
+    assert received.update(NO_PART) == NO_CELLS
+    assert received.cells is cells
 
 
 def test_a_missing_update_is_noticed(maps: Maps) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from navette.navigation.grids import (
     CellWindow,
+    GrowthMemory,
     RowSpans,
     SparseGrid,
     copied,
@@ -128,6 +129,39 @@ def test_padding_equals_numpys(
     expected = np.pad(cells, pad, constant_values=value)
     np.testing.assert_array_equal(padded(cells, pad, value), expected)
     assert padded(cells, pad, value).dtype == kind
+
+
+@pytest.mark.parametrize("shape", [(4, 6), (1900, 2300)])
+@pytest.mark.parametrize(("kind", "value"), [(np.int8, -1), (np.float32, np.nan)])
+def test_padding_within_its_memory_equals_numpys(
+    shape: tuple[int, int], kind: type[np.generic], value: float
+) -> None:
+    """Also beyond the memory that is reserved: the edges become 4.5 times as long."""
+    rng = np.random.default_rng(4)
+    memory = GrowthMemory()
+    grown = rng.integers(0, 99, shape).astype(kind)
+    for pad in (
+        ((3, 0), (5, 2)),
+        ((0, 300), (0, 0)),
+        ((0, 0), (0, 1)),
+        ((0, 0), (400, 0)),
+        ((257, 1), (0, 0)),
+        ((3 * shape[0], 0), (0, 3 * shape[1])),
+    ):
+        expected = np.pad(grown, pad, constant_values=value)
+        grown = memory.padded(grown, pad, value)
+        np.testing.assert_array_equal(grown, expected)
+        assert grown.dtype == kind
+        grown[tuple(rng.integers(0, grown.shape))] = 7
+
+
+def test_a_large_array_stays_where_it_is_when_it_grows() -> None:
+    memory = GrowthMemory()
+    first = memory.padded(np.zeros((2000, 2200), np.int8), ((0, 1), (0, 0)), -1)
+    second = memory.padded(first, ((5, 0), (9, 0)), -1)
+    assert np.shares_memory(first, second)
+    third = memory.padded(second.copy(), ((5, 0), (0, 0)), -1)
+    assert not np.shares_memory(second, third), "another array may still be used"
 
 
 def test_a_copy_changes_independently() -> None:

@@ -1,6 +1,7 @@
 """Whole maps as messages that are used again once no reader has them."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -10,6 +11,7 @@ from navette.navigation.mapping.whole_maps import WholeMaps
 
 SPEC = GridSpec(0.05, 7, 5, Pose2(-1.0, 2.0, 0.0))
 WIDER = GridSpec(0.05, 9, 5, Pose2(-1.1, 2.0, 0.0))
+NARROWER = GridSpec(0.1, 4, 3, Pose2(-1.0, 2.0, 0.0))
 
 
 def unknown(spec: GridSpec) -> np.ndarray:
@@ -24,6 +26,17 @@ def test_a_message_without_a_reader_becomes_the_next_one() -> None:
     message = maps.message(cells, SPEC, "map", 2)
     assert id(message) == first
     assert message == grid_to_message(cells, SPEC, "map", 2)
+
+
+@pytest.mark.parametrize("later", [WIDER, NARROWER])
+def test_a_message_is_used_again_when_the_map_has_another_size(later: GridSpec) -> None:
+    maps = WholeMaps()
+    first = id(maps.message(unknown(SPEC), SPEC, "map", 1))
+    maps.note_change(None)
+    cells = np.arange(later.width * later.height, dtype=np.int8).reshape(later.shape)
+    message = maps.message(cells, later, "map", 2)
+    assert id(message) == first
+    assert message == grid_to_message(cells, later, "map", 2)
 
 
 def test_what_a_reader_keeps_of_a_message_does_not_change() -> None:

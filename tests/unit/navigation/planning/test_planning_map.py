@@ -104,6 +104,17 @@ def test_a_map_that_holds_a_goal_follows_the_received_one_as_it_grows() -> None:
     assert mine.cells[row, column] == 100
 
 
+def test_a_map_within_the_one_before_leaves_its_array_alone() -> None:
+    """It may be that of a message, which other nodes have, too."""
+    cells = np.zeros(SPEC.shape, np.int8)
+    mine = PlanningMap(cells, SPEC)
+    smaller = GridSpec(0.1, 40, 30, SPEC.origin)
+    lethal = np.full(smaller.shape, 100, np.int8)
+    assert mine.receive(lethal, smaller) == (0, 30, 0, 40)
+    assert not cells.any()
+    assert np.count_nonzero(mine.cells) == lethal.size
+
+
 def test_a_goal_beyond_the_largest_size_stays_outside() -> None:
     mine = PlanningMap(np.zeros(SPEC.shape, np.int8), SPEC)
     assert not mine.hold(0.0, 60.0, 50.0)

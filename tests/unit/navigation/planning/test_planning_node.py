@@ -15,7 +15,7 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
-from navette.navigation.grids import CellWindow
+from navette.navigation.grids import CellWindow, received_map
 from navette.navigation.planning import NewMap
 from navette.navigation.planning.planner import Planner
 from navette.runtime import Parameter, StaticTransformBroadcaster
@@ -332,3 +332,32 @@ def test_parts_give_the_same_grid_as_whole_maps(graph: GraphHarness, seed: int) 
         fresh.set_map(NewMap(world.occupancy.copy(), world.spec))
         grid = world.node._runner.navigator.planner.grid()
         np.testing.assert_array_equal(grid.cost, fresh.grid().cost)
+
+
+def test_an_update_is_used_with_its_whole_map_without_a_copy(
+    graph: GraphHarness, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copies: list[np.ndarray] = []
+
+    def counted(array: np.ndarray) -> np.ndarray:
+        copies.append(array)
+        return array.copy()
+
+    monkeypatch.setattr(received_map, "copied", counted)
+    world = World(graph).ready()
+    world.begin_updates()
+    world.send(8, 4)
+    graph.run_for(0.7)
+    assert world.message == "following"
+    fill(world.occupancy, world.spec, (5, 5.2), (0, 8))
+    world.send_part(CellWindow.whole(world.spec.shape))
+    world.send_map()
+    graph.run_for(0.5)
+    assert (world.message, len(copies)) == ("no_path", 0)
+    fill(world.occupancy, world.spec, (5, 5.2), (0, 8), 0)
+    world.send_part(CellWindow.whole(world.spec.shape))  # whose map does not come
+    graph.run_for(0.3)
+    assert len(copies) == 1
+    assert (copies[0] == 100).any(), "the array of the message, which others have, too"
+    planner = world.node._runner.navigator.planner
+    np.testing.assert_array_equal(planner.map.cells, world.occupancy)

@@ -245,7 +245,7 @@ class ExplorerNode(MapReaderNode):
                 self._search = FrontierSearch.of(*change, params)
             elif isinstance(change, MapPart):
                 assert self._search is not None, "the first map is whole"
-                self._search.update(*change)
+                self._search.update(change.cells, change.window)
             elif self._search is not None:
                 self._search.set_params(change)
         assert self._search is not None, "a map has arrived"
