@@ -7,7 +7,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.params import Params, info_of
 
 PAGE = Path(__file__).parent / "reference" / "nodes.md"
@@ -19,7 +19,7 @@ In the order data flows. Generated from the node classes by `python docs/generat
 
 def nodes_page() -> str:
     """Return the page as Markdown."""
-    return "\n".join([HEAD, *(_section(name, cls) for name, cls in NODE_CLASSES)])
+    return "\n".join([HEAD, *(_section(name, cls) for name, cls in node_classes())])
 
 
 def _section(name: str, cls: Any) -> str:

@@ -23,7 +23,7 @@ from navette.navigation.missions.sequence import (
 )
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.reports import Phase, State
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 
 DOCS = Path(__file__).parent.parent / "docs"
 BLOCK = re.compile(r"```(python|text)\n(.*?)```", re.DOTALL)
@@ -66,7 +66,7 @@ def test_parameters_in_the_troubleshooting_page_exist() -> None:
     page = (DOCS / "reference" / "troubleshooting.md").read_text(encoding="utf-8")
     known = {
         field.name
-        for _, cls in NODE_CLASSES
+        for _, cls in node_classes()
         for field in dataclasses.fields(cls.PARAMS)
     }
     named = set(re.findall(r"`([a-z_]+_(?:m|s|mps|rad|margin|check|frame))\b", page))

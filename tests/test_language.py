@@ -16,7 +16,7 @@ import pytest
 
 from navette.bags.params import RecorderParams
 from navette.navigation.gym.params import NavigationEnvParams
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.params import Params, info_of, unit_of
 from navette.viewer.params import ViewerParams
 
@@ -197,8 +197,8 @@ def test_a_public_class_name_occurs_once() -> None:
 
 
 RECORDS: tuple[type[Params], ...] = (
-    *(node_class.PARAMS for _, node_class in NODE_CLASSES),
-    *(each for _, kind in NODE_CLASSES for each in kind.PARAM_GROUPS.values()),
+    *(node_class.PARAMS for _, node_class in node_classes()),
+    *(each for _, kind in node_classes() for each in kind.PARAM_GROUPS.values()),
     RecorderParams,
     ViewerParams,
     NavigationEnvParams,

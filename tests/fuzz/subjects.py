@@ -16,7 +16,7 @@ from navette.msgs.copying import copy_message
 from navette.navigation.stack import RunOptions
 from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.simulation import Simulation
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.runtime import (
     Context,
     DurabilityPolicy,
@@ -110,7 +110,7 @@ class Subject:
 
 SUBJECTS = [
     Subject(name, node_class, parameters)
-    for name, node_class in NODE_CLASSES
+    for name, node_class in node_classes()
     for parameters in VARIANTS.get(name, ({},))
 ]
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from navette.bags import open_bag
 from navette.bags.compare import Comparison, Tolerances, compare
 from navette.navigation.stack.replay import Replay
-from navette.navigation.stack.stack import node_class
+from navette.navigation.stack.stage_classes import node_class
 from navette.runtime import Context, Node
 
 FOLDER = Path(__file__).parent / "golden"

@@ -22,7 +22,7 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.stack.recorded_parameters import give_recorded_parameters
-from navette.navigation.stack.stack import node_class
+from navette.navigation.stack.stage_classes import node_class
 from navette.ros2.packages.message_filters import (
     ApproximateTimeSynchronizer,
     Cache,

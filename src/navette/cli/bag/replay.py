@@ -107,7 +107,7 @@ def _compare(
 def _maker(name: str) -> "MakeNode":
     """Return the constructor of a stage, or of a class given by its location."""
     if ":" not in name:
-        from navette.navigation.stack.stack import node_class
+        from navette.navigation.stack.stage_classes import node_class
 
         stage: Callable[..., Node] = node_class(name)
         return lambda context: stage(context=context)

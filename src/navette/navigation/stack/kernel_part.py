@@ -106,7 +106,7 @@ def _localize(cells: NDArray[np.int8], spec: GridSpec) -> None:
 
 def _make(name: str, **parameters: str) -> None:
     """Create a node, which compiles its kernels, and destroy it."""
-    from navette.navigation.stack.stack import node_class
+    from navette.navigation.stack.stage_classes import node_class
     from navette.runtime import (
         Context,
         LoggingSeverity,

@@ -3,28 +3,21 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from navette.navigation.localization.amcl.node import AmclNode
-from navette.navigation.localization.ekf.node import EkfNode
-from navette.navigation.localization.localizer.node import LocalizerNode
-from navette.navigation.slam.node import SlamNode
-from navette.runtime import StageNode
 from navette.sim.params import SimParams
 
-LOCALIZATIONS: Mapping[str, tuple[tuple[str, type[StageNode]], ...]] = MappingProxyType(
-    {
-        "truth": (("localizer", LocalizerNode),),
-        "odometry": (("localizer", LocalizerNode),),
-        "amcl": (("amcl", AmclNode),),
-        "slam": (("slam", SlamNode),),
-    }
+_LOCATORS: Mapping[str, str] = MappingProxyType(
+    {"truth": "localizer", "odometry": "localizer", "amcl": "amcl", "slam": "slam"}
 )
-"""Source of the pose (``SimParams.locator``) → name and class of the nodes."""
+"""Source of the pose (``SimParams.locator``) → name of the node."""
 
-FILTER: tuple[str, type[StageNode]] = ("ekf", EkfNode)
-"""The node that publishes the odometry if the simulator does not."""
+# Publishes the odometry if the simulator does not.
+_FILTER = "ekf"
+
+LOCALIZATION_NODES = (_FILTER, *dict.fromkeys(_LOCATORS.values()))
+"""Names of all these nodes."""
 
 
-def localization_nodes(sim: SimParams) -> tuple[tuple[str, type[StageNode]], ...]:
-    """Return name and class of the nodes that locate the robot, in flow order."""
-    nodes = LOCALIZATIONS[sim.locator]
-    return (FILTER, *nodes) if sim.filters_odometry else nodes
+def localization_nodes(sim: SimParams) -> tuple[str, ...]:
+    """Return the names of the nodes that locate the robot, in flow order."""
+    locator = _LOCATORS[sim.locator]
+    return (_FILTER, locator) if sim.filters_odometry else (locator,)

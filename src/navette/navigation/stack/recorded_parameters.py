@@ -6,7 +6,7 @@ from typing import Any
 from navette.bags.play import Source
 from navette.msgs import deserialize
 from navette.msgs.rcl_interfaces.msg import ParameterEvent
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.runtime import Parameter
 from navette.runtime.overrides import ParameterOverrides
 
@@ -39,7 +39,7 @@ def give_recorded_parameters(overrides: ParameterOverrides, source: Source) -> N
         return
     known = {
         f"/{name}": {field.name for field in fields(kind.PARAMS)}
-        for name, kind in NODE_CLASSES
+        for name, kind in node_classes()
     }
     for node, values in recorded_parameters(source).items():
         wanted = known.get(node, values.keys())

@@ -167,7 +167,7 @@ class Simulation:
 
         self.monitor = MonitorNode(context=context, on_change=note)
         self._add_localization()
-        located_by = [name for name, _ in localization_nodes(self.sim.params)]
+        located_by = localization_nodes(self.sim.params)
         self.stack = NavigationStack.create(context, self._replacements, located_by)
         frames = {
             name: getattr(self.sim.params, name) for name in ("map_frame", "base_frame")
@@ -223,7 +223,7 @@ class Simulation:
         start = self.sim.simulator.pose().to_pose2()
         params = self.sim.params
         found = localization_parameters(params, start, self.resolved.scene.origin)
-        for name, _ in localization_nodes(params):
+        for name in localization_nodes(params):
             if name in found:
                 origin = f"localization {params.localization}"
                 self._add_below(name, found[name], origin)

@@ -4,29 +4,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from navette.errors import UnknownNameError
 from navette.navigation.arbiter.node import ArbiterNode
-from navette.navigation.behaviors.node import BehaviorNode
-from navette.navigation.behaviors.reflex.node import ReflexNode
 from navette.navigation.control.node import ControlNode
 from navette.navigation.control.params import ControlParams
-from navette.navigation.costmap.node import CostmapNode
-from navette.navigation.localization.distance.node import OdomIntegratorNode
-from navette.navigation.mapping.node import MapMemoryNode
-from navette.navigation.mapping.zones.node import ZonesNode
-from navette.navigation.missions.explore.node import ExplorerNode
 from navette.navigation.missions.node import MissionNode
-from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
-from navette.navigation.stack.localization import FILTER, LOCALIZATIONS
 from navette.navigation.stack.programs import (
     MakeNode,
     check_replaceable,
     default_context,
 )
-from navette.navigation.tracking.node import TrackingNode
-from navette.runtime import Context, Node, StageNode
-from navette.sim.node import SimNode
+from navette.navigation.stack.stage_classes import node_class
+from navette.runtime import Context, Node
 
 FLOW = (
     "sim",
@@ -43,39 +32,7 @@ FLOW = (
 )
 """The stages in data-flow order."""
 
-NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
-    ("sim", SimNode),
-    ("odom_integrator", OdomIntegratorNode),
-    FILTER,
-    *dict.fromkeys(each for nodes in LOCALIZATIONS.values() for each in nodes),
-    ("costmap", CostmapNode),
-    ("tracking", TrackingNode),
-    ("map_memory", MapMemoryNode),
-    ("zones", ZonesNode),
-    ("planner", PlannerNode),
-    ("control", ControlNode),
-    ("behaviors", BehaviorNode),
-    ("reflex", ReflexNode),
-    ("arbiter", ArbiterNode),
-    ("missions", MissionNode),
-    ("explorer", ExplorerNode),
-    ("lifecycle_manager_navigation", LifecycleManagerNode),
-)
-
-
 _NOTHING: Mapping[str, MakeNode] = MappingProxyType({})
-
-
-def node_class(name: str) -> type[StageNode]:
-    """Return the class of a stage that needs topics only, by its node's name.
-
-    Raises:
-        UnknownNameError: unknown stage; the text lists the known ones.
-    """
-    known = {each: kind for each, kind in NODE_CLASSES if kind is not SimNode}
-    if name not in known:
-        raise UnknownNameError.of("stage", name, list(known))
-    return known[name]
 
 
 @dataclass(frozen=True)

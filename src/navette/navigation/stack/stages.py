@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
 from navette.files.runs import stay_shared
+from navette.navigation.stack.stage_classes import node_class
 from navette.runtime import Context, ContextClock, Node, PacedClock
 from navette.runtime.lockstep import Coordinator
 from navette.runtime.overrides import ParameterOverrides
@@ -86,8 +87,6 @@ def odom_integrator() -> None:
 @_program
 def ekf() -> None:
     """Run the extended Kalman filter."""
-    from navette.navigation.localization.ekf.node import EkfNode
-
     text = "odometry, IMU, GNSS (topics are parameters) → /odom/filtered, /tf"
     parser = _parser("ekf", text)
     _add_robot(parser)
@@ -98,10 +97,10 @@ def ekf() -> None:
     )
     given = _parse(parser)
     if given.localization is None:
-        _run(lambda context: EkfNode(context=context), ParameterOverrides())
+        _run(lambda context: _make("ekf", context), ParameterOverrides())
     else:
         sim = _simulated(given, given.localization)
-        _run_localization(given, sim, [("ekf", EkfNode)], None)
+        _run_localization(given, sim, ["ekf"], None)
 
 
 @_program
@@ -128,105 +127,81 @@ def localization() -> None:
 @_program
 def localizer() -> None:
     """Run the localizer."""
-    from navette.navigation.localization.localizer.node import LocalizerNode
-
-    _run_stage("localizer", LocalizerNode, "/odom/filtered, /initialpose → /amcl_pose")
+    _run_stage("localizer", "/odom/filtered, /initialpose → /amcl_pose")
 
 
 @_program
 def amcl() -> None:
     """Run the localization on a known map."""
-    from navette.navigation.localization.amcl.node import AmclNode
-
     text = "/static_map, /lidar, /odom/filtered → /tf (map → odom), /amcl_pose"
     given = _parse(_locating_parser("amcl", text))
     sim = _simulated(given, "amcl")
-    _run_localization(given, sim, [("amcl", AmclNode)], given.start)
+    _run_localization(given, sim, ["amcl"], given.start)
 
 
 @_program
 def slam() -> None:
     """Run the SLAM."""
-    from navette.navigation.slam.node import SlamNode
-
     text = "/lidar, /odom/filtered → /tf (map → odom), /pose, /slam/map"
     given = _parse(_locating_parser("slam", text))
     sim = _simulated(given, "slam")
-    _run_localization(given, sim, [("slam", SlamNode)], given.start)
+    _run_localization(given, sim, ["slam"], given.start)
 
 
 @_program
 def costmap() -> None:
     """Run the costmap."""
-    from navette.navigation.costmap.node import CostmapNode
-
-    _run_stage("costmap", CostmapNode, "/lidar → /costmap")
+    _run_stage("costmap", "/lidar → /costmap")
 
 
 @_program
 def tracking() -> None:
     """Run the tracking of moving obstacles."""
-    from navette.navigation.tracking.node import TrackingNode
-
-    _run_stage("tracking", TrackingNode, "/lidar, /odom/filtered → /tracked_obstacles")
+    _run_stage("tracking", "/lidar, /odom/filtered → /tracked_obstacles")
 
 
 @_program
 def map_memory() -> None:
     """Run the map memory."""
-    from navette.navigation.mapping.node import MapMemoryNode
-
-    _run_stage("map_memory", MapMemoryNode, "/costmap, /odom/filtered → /map")
+    _run_stage("map_memory", "/costmap, /odom/filtered → /map")
 
 
 @_program
 def zones() -> None:
     """Run the keep-out and speed zones."""
-    from navette.navigation.mapping.zones.node import ZonesNode
-
-    _run_stage("zones", ZonesNode, "filter masks → /keepout_zones, /speed_limit")
+    _run_stage("zones", "filter masks → /keepout_zones, /speed_limit")
 
 
 @_program
 def planner() -> None:
     """Run the planner."""
-    from navette.navigation.planning.node import PlannerNode
-
-    _run_stage("planner", PlannerNode, "/map, /goal_point → /path")
+    _run_stage("planner", "/map, /goal_point → /path")
 
 
 @_program
 def control() -> None:
     """Run the controller."""
-    from navette.navigation.control.node import ControlNode
-
-    _run_stage("control", ControlNode, "/path, /odom/filtered → /cmd_vel_nav")
+    _run_stage("control", "/path, /odom/filtered → /cmd_vel_nav")
 
 
 @_program
 def behaviors() -> None:
     """Run the behaviors."""
-    from navette.navigation.behaviors.node import BehaviorNode
-
     text = "actions spin, backup, drive_on_heading, … → /cmd_vel_nav"
-    _run_stage("behaviors", BehaviorNode, text)
+    _run_stage("behaviors", text)
 
 
 @_program
 def reflex() -> None:
     """Run the reflex to contacts."""
-    from navette.navigation.behaviors.reflex.node import ReflexNode
-
-    _run_stage("reflex", ReflexNode, "/hazard_detection → /cmd_vel_reflex")
+    _run_stage("reflex", "/hazard_detection → /cmd_vel_reflex")
 
 
 @_program
 def arbiter() -> None:
     """Run the arbiter."""
-    from navette.navigation.arbiter.node import ArbiterNode
-
     text = "/cmd_vel_nav, /cmd_vel_teleop, /emergency_stop → /cmd_vel"
-    _run_stage("arbiter", ArbiterNode, text)
+    _run_stage("arbiter", text)
 
 
 @_program
@@ -283,9 +258,7 @@ def missions() -> None:
 @_program
 def explorer() -> None:
     """Run the explorer."""
-    from navette.navigation.missions.explore.node import ExplorerNode
-
-    _run_stage("explorer", ExplorerNode, "/map → goals of navigate_to_pose")
+    _run_stage("explorer", "/map → goals of navigate_to_pose")
 
 
 @_program
@@ -334,12 +307,12 @@ def _announced_viewer(context: Context) -> Node:
     return node
 
 
-def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
+def _run_stage(name: str, text: str) -> None:
     parser = _parser(name, text)
     _add_robot(parser)
     resolved = _resolve_robot(_parse(parser))
     _run(
-        lambda context: node_class(context=context),
+        lambda context: _make(name, context),
         _profile(resolved, name),
         resolved=resolved,
     )
@@ -368,7 +341,7 @@ def _simulated(given: Any, localization: str) -> "SimParams":
 def _run_localization(
     given: Any,
     sim: "SimParams",
-    nodes: Sequence[tuple[str, Callable[..., Node]]],
+    nodes: Sequence[str],
     start: "Pose2 | None",
 ) -> None:
     """Run nodes that locate the robot, with the frames of the robot.
@@ -384,7 +357,7 @@ def _run_localization(
         sim, start or Pose2(0.0, 0.0, 0.0), resolved.scene.origin
     )
     profile = ParameterOverrides()
-    for name, _ in nodes:
+    for name in nodes:
         own = of_nodes.get(name, {})
         if start is None:
             own = {key: v for key, v in own.items() if "initial_pose" not in key}
@@ -394,10 +367,14 @@ def _run_localization(
         profile.sets += _profile(resolved, name, target).sets
 
     def make(context: Context) -> Node:
-        made = [node_class(context=context) for _, node_class in nodes]
-        return made[-1]
+        return [_make(name, context) for name in nodes][-1]
 
     _run(make, profile, resolved=resolved)
+
+
+def _make(name: str, context: Context) -> Node:
+    kind: Callable[..., Node] = node_class(name)
+    return kind(context=context)
 
 
 def _parser(name: str, text: str) -> argparse.ArgumentParser:

@@ -14,10 +14,10 @@ from navette.cli.up.config import DEFAULT_FILE
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.navigation.stack import RunOptions, stages
-from navette.navigation.stack.localization import LOCALIZATIONS
+from navette.navigation.stack.localization import LOCALIZATION_NODES
 from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.simulation import Simulation
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.ros2.launch.session import find_launch_file
 from navette.ros2.names.process import RunningProgram, program_threads
 from navette.ros2.names.targets import read_programs
@@ -139,9 +139,13 @@ def test_a_localization_alone_has_no_start() -> None:
 
 def test_services_and_launch_file_start_the_nodes_of_a_run() -> None:
     """``navette up``, ``sim.launch.xml`` and ``navette sim`` have the same nodes."""
-    of_run = {"localization", "viewer"} | {name for name, _ in NODE_CLASSES}
-    of_run -= {name for nodes in LOCALIZATIONS.values() for name, _ in nodes}
-    of_run -= {"ekf", "odom_integrator", "explorer", "lifecycle_manager_navigation"}
+    of_run = {"localization", "viewer"} | {name for name, _ in node_classes()}
+    of_run -= {
+        *LOCALIZATION_NODES,
+        "odom_integrator",
+        "explorer",
+        "lifecycle_manager_navigation",
+    }
     services = DEFAULT_FILE.read_text(encoding="utf-8")
     started = set(re.findall(r"navette (\w+) --world", services))
     assert started == of_run

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from navette.errors import ParameterError
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.params import Params
 from navette.runtime import Context, VirtualClock
 from navette.sim import World, load_robot
@@ -42,7 +42,7 @@ def make(name: str, node_class: Any, context: Context) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "node_class"), NODE_CLASSES, ids=[name for name, _ in NODE_CLASSES]
+    ("name", "node_class"), node_classes(), ids=[name for name, _ in node_classes()]
 )
 def test_extreme_parameters_are_refused_at_the_start(
     name: str, node_class: Any

@@ -23,7 +23,7 @@ from navette.msgs import (
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.stack.replay import Replay, ReplaySummary
-from navette.navigation.stack.stack import node_class
+from navette.navigation.stack.stage_classes import node_class
 from navette.ros2.names import is_installed, uninstall
 from navette.ros2.names.node_classes import load_node_class
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile

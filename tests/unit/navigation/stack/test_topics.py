@@ -8,12 +8,12 @@ import pytest
 import navette
 from navette.msgs import get_interface, topics
 from navette.msgs.topics import CHAIN, StackTopic
-from navette.navigation.stack.stack import NODE_CLASSES
+from navette.navigation.stack.stage_classes import node_classes
 from navette.runtime import StageNode
 
 SOURCE = Path(navette.__file__).parent
 TABLE = {each.name: each for each in vars(topics).values() if type(each) is StackTopic}
-NODES = dict(NODE_CLASSES)
+NODES = dict(node_classes())
 
 
 @pytest.mark.parametrize("topic", TABLE.values(), ids=lambda each: each.name)
