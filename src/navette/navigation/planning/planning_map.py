@@ -43,7 +43,7 @@ class PlanningMap:
         """Use a newer map; return the cells that may have changed, None if all.
 
         Args:
-            cells: (h, w), kept: write to them only to give them again, with ``changed``.
+            cells: (h, w), kept: write to them only to give them again with ``changed``.
             spec: geometry of ``cells``.
             changed: the cells that differ from those of the last call; None: not known,
                 the maps are compared.
