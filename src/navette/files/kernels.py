@@ -12,7 +12,6 @@ import functools
 import hashlib
 import logging
 import os
-import pickle
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -22,13 +21,14 @@ from typing import Any, ParamSpec, TypeVar, overload
 
 import numba
 from numba import types
-from numba.core import compiler, serialize, sigutils
+from numba.core import serialize, sigutils
 from numba.core.caching import NullCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 
 from navette.files.folders import cache_folder, is_private
 from navette.files.kernel_archive import package_archive, select_processor
+from navette.files.machine_code import load_kernel
 
 VARIABLE = "NUMBA_CACHE_DIR"
 _SUFFIX = ".kernel"
@@ -120,8 +120,7 @@ class KernelCache(NullCache):
             if _HASH_SYMBOLS in data:
                 target_context.refresh()
             try:
-                rebuild: Any = compiler.CompileResult._rebuild
-                return rebuild(target_context, *pickle.loads(data))
+                return load_kernel(target_context, data)
             except Exception as error:  # unpickling raises whatever a class raises
                 _log.debug("%s: %r; compiling", self._function.__name__, error)
         return None

@@ -3,15 +3,17 @@
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from navette.errors import FileFormatError
 from navette.geometry import Pose2
 from navette.geometry.map_files.description import MapDescription, read_description
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 # The largest map of the map memory: 500 m wide at 5 cm.
 MAX_PIXELS = 10_000**2
@@ -77,11 +79,22 @@ def _table(described: MapDescription, white: int) -> NDArray[np.int8]:
     return cells
 
 
-def _opened(path: Path) -> Image.Image:
+def _opened(path: Path) -> "Image":
+    """Open an image.
+
+    Raises:
+        OSError: it cannot be read, or is of another format.
+        ValueError: it has too many pixels.
+    """
+    from PIL import Image  # every start imports this module, and few read a map
+
     with warnings.catch_warnings():
         # Pillow warns of fewer pixels than are allowed here.
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-        return Image.open(path, formats=_FORMATS)
+        try:
+            return Image.open(path, formats=_FORMATS)
+        except Image.DecompressionBombError as error:
+            raise ValueError(str(error)) from None
 
 
 def _pixels(
@@ -113,13 +126,7 @@ def _pixels(
             described.path,
             f"image {str(described.image)!r} cannot be read: no such file",
         ) from None
-    except (
-        OSError,
-        ValueError,
-        SyntaxError,  # a damaged PNG
-        UnidentifiedImageError,
-        Image.DecompressionBombError,
-    ) as error:
+    except (OSError, ValueError, SyntaxError) as error:  # the last: a damaged PNG
         name = described.image.name
         raise FileFormatError(
             described.path,

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import yaml
 from numpy.typing import NDArray
-from PIL import Image
 
 from navette.errors import InvalidValueError
 from navette.geometry.map_files.description import MAP_MODES
@@ -45,6 +44,8 @@ def write_occupancy_map(
         InvalidValueError: an option is invalid; nothing is written.
         OSError: a file cannot be written.
     """
+    from PIL import Image  # as in reader.py
+
     image_format = image_format or ("png" if mode == "scale" else "pgm")
     _check(mode, image_format, free_threshold, occupied_threshold)
     pixels = _PIXELS[mode](np.flipud(occupancy.cells), free_threshold,

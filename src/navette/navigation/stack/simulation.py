@@ -1,15 +1,12 @@
 """A run of the simulated robot with its navigation, from options to summary."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError, ParameterError
 from navette.msgs.topics import CLOCK, SLAM_MAP, STATIC_MAP
-from navette.navigation.behaviors.reflex.node import ReflexNode
-from navette.navigation.mapping.zones.node import ZonesNode
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.stack.localization import localization_nodes
 from navette.navigation.stack.localization_params import localization_parameters
@@ -21,6 +18,7 @@ from navette.navigation.stack.programs import MakeNode
 from navette.navigation.stack.reservation import reserve
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
 from navette.navigation.stack.stack import NavigationStack
+from navette.navigation.stack.stage_classes import node_class
 from navette.navigation.stack.summary import RunSummary
 from navette.runtime import (
     Context,
@@ -39,6 +37,9 @@ from navette.sim.sensor_topics import has_bumper
 from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
 from navette.viewer.params import ViewerParams
+
+if TYPE_CHECKING:
+    from navette.bags.node import RecorderNode
 
 HALT_NS = 1_000_000_000
 """Simulated time for the robot to brake after a node raised."""
@@ -149,13 +150,7 @@ class Simulation:
 
     def _create_nodes(self, on_change: OnProgress) -> None:
         options, context = self.options, self.context
-        self.recorder = (
-            None
-            if options.record is None
-            else RecorderNode(
-                options.record, overwrite=options.overwrite, context=context
-            )
-        )
+        self.recorder = self._recorder()
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
         # Before the missions, so that it reports the last goal before they end the run.
         self.pose_error = PoseErrorNode(self.sim, context=context)
@@ -173,11 +168,9 @@ class Simulation:
             name: getattr(self.sim.params, name) for name in ("map_frame", "base_frame")
         }
         if has_bumper(self.sim.simulator.compiled.robot.model):
-            self._add_below("reflex", frames, "frames of the robot")
-            ReflexNode(context=context)
+            self._add_node("reflex", frames)
         if options.keepout is not None or options.speed_zones is not None:
-            self._add_below("zones", frames, "frames of the robot")
-            ZonesNode(context=context)
+            self._add_node("zones", frames)
         self.viewer = (
             None
             if options.headless
@@ -194,6 +187,22 @@ class Simulation:
             self.executor.add_node(node)
         if options.ends_with_goals:
             self.stack.missions.on_done = self.stop
+
+    def _recorder(self) -> "RecorderNode | None":
+        options = self.options
+        if options.record is None:
+            return None
+        from navette.bags.node import RecorderNode  # 40 ms, as all of bags
+
+        return RecorderNode(
+            options.record, overwrite=options.overwrite, context=self.context
+        )
+
+    def _add_node(self, name: str, frames: Mapping[str, str]) -> None:
+        """Create a node outside of the stack, with the frames of the robot."""
+        self._add_below(name, frames, "frames of the robot")
+        kind: Callable[..., Node] = node_class(name)
+        kind(context=self.context)
 
     def _check_map(self) -> None:
         """Check that amcl has a map: from a file, or from a node of a shared network.
