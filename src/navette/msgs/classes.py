@@ -171,7 +171,7 @@ def _compile_on_use(cls: type[Message]) -> None:
     programs do not use.
     """
 
-    def construct(self: Message, *arguments: Any, **fields: Any) -> None:
+    def construct(self: Message, /, *arguments: Any, **fields: Any) -> None:
         _compile(cls)
         cls.__init__(self, *arguments, **fields)
 

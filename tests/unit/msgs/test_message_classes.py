@@ -197,3 +197,31 @@ def test_modules_list_their_classes() -> None:
     assert "String" in dir(module)
     with pytest.raises(AttributeError, match="no 'Strung'; it has"):
         module.Strung  # type: ignore[attr-defined]  # noqa: B018 - raises
+
+
+@pytest.mark.parametrize("use", ["keyword", "default", "setter", "read", "subclass"])
+def test_the_first_use_of_a_class_is_as_any_other(use: str) -> None:
+    point = register_definition(f"made_for/{use.title()}", "float64 self 2.5\nint8 n")
+    holder = register_definition(
+        f"made_for/{use.title()}Holder", f"made_for/{use.title()} point"
+    )
+    match use:
+        case "keyword":
+            made = point(self=3.0, n=4)
+        case "default":
+            made = holder().point
+        case "setter":
+            made = object.__new__(point)
+            made.self, made.n = 2.5, 0
+        case "read":
+            made = deserialize(serialize(holder(point=point())), holder).point
+        case _:
+            made = type("Mine", (point,), {})()
+    assert made == (type(made)(self=3.0, n=4) if use == "keyword" else type(made)())
+    assert made.self == (3.0 if use == "keyword" else 2.5)
+    with pytest.raises(MessageError, match=r"n .*int8"):
+        made.n = 200
+    with pytest.raises(MessageError, match="no field 'm'; its fields: self, n"):
+        point(m=1)
+    with pytest.raises(TypeError):
+        point(1.0)

@@ -77,6 +77,7 @@ from navette.navigation.grids.received_map import (
     ReceivedMap,
 )
 from navette.navigation.grids.regions import SquareRegion
+from navette.navigation.grids.shared_cells import SharedCells
 from navette.navigation.grids.sparse import (
     GrowthMemory,
     RowSpans,
@@ -114,6 +115,7 @@ __all__ = [
     "MapPart",
     "MapReader",
     "ReceivedMap",
+    "SharedCells",
     "SquareRegion",
     "NO_DISCS",
     "NO_PART",

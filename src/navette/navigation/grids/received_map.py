@@ -14,7 +14,7 @@ from navette.msgs.map_msgs.msg import OccupancyGridUpdate
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.navigation.grids.checks import check_frame
 from navette.navigation.grids.messages import grid_from_message, window_from_message
-from navette.navigation.grids.sparse import copied
+from navette.navigation.grids.shared_cells import SharedCells
 from navette.navigation.grids.spec import Cells, GridSpec
 from navette.navigation.grids.windows import NO_CELLS, CellWindow
 
@@ -35,8 +35,8 @@ NO_PART = MapPart(np.empty((0, 0), np.int8), NO_CELLS)
 """Nothing has changed."""
 
 
-class ReceivedMap:
-    """A map; its array is copied before the first part changes it.
+class ReceivedMap(SharedCells):
+    """A map of a message.
 
     Attributes:
         cells: (H, W) −1 unknown, 0 free … 100 occupied.
@@ -44,23 +44,17 @@ class ReceivedMap:
     """
 
     def __init__(self, cells: Cells, spec: GridSpec) -> None:
-        self.cells, self.spec = cells, spec
-        self._is_own = False
-
-    def share(self) -> None:
-        """Leave the array to others that still use it."""
-        self._is_own = False
+        super().__init__(cells)
+        self.spec = spec
 
     def update(self, part: MapPart | None) -> CellWindow:
         """Change a part; return what has changed."""
         if part is None:
             return NO_CELLS
         if part.whole is not None:
-            self.cells, self._is_own = part.whole, False
+            self.replace(part.whole)
         elif not part.window.is_empty:
-            if not self._is_own:
-                self.cells, self._is_own = copied(self.cells), True
-            self.cells[part.window.slices] = part.cells
+            self.writable()[part.window.slices] = part.cells
         return part.window
 
 

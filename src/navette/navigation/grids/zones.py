@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.navigation.grids.received_map import ReceivedMap
-from navette.navigation.grids.sparse import copied
+from navette.navigation.grids.shared_cells import SharedCells
 from navette.navigation.grids.spec import LETHAL, Cells, GridFrame, GridSpec, grid_frame
 from navette.navigation.grids.windows import CellWindow
 
@@ -54,11 +54,11 @@ class ZonedMap:
     def __init__(self, zones: KeepOutZones) -> None:
         self._zones = zones
         self._received: ReceivedMap | None = None
-        self._is_own = False
+        self._map = SharedCells(np.empty((0, 0), np.int8))
 
     def share(self) -> None:
         """Leave the array to others that still use it."""
-        self._is_own = False
+        self._map.share()
 
     def update(self, received: ReceivedMap, changed: CellWindow) -> Cells:
         """Return the cells (H, W) of a map and of the zones.
@@ -68,16 +68,15 @@ class ZonedMap:
             changed: where it differs from the last call, if it is the same map.
         """
         if received is not self._received:
-            self._received, self._cells = received, copied(received.cells)
+            self._received = received
+            self._map.replace(received.cells)
             changed = CellWindow.whole(received.cells.shape)
         elif changed.is_empty:
-            return self._cells
-        elif not self._is_own:
-            self._cells = copied(self._cells)
-        self._is_own = True
-        self._cells[changed.slices] = received.cells[changed.slices]
-        self._zones.mark(self._cells, received.spec, changed)
-        return self._cells
+            return self._map.cells
+        cells = self._map.writable()
+        cells[changed.slices] = received.cells[changed.slices]
+        self._zones.mark(cells, received.spec, changed)
+        return cells
 
 
 @kernel(allocates=False)

@@ -13,6 +13,7 @@ from navette.navigation.grids import (
     UNKNOWN,
     CellWindow,
     GridSpec,
+    SharedCells,
     copied,
     padded,
 )
@@ -25,7 +26,7 @@ _STEP_M = 10.0
 _MOST_CELLS = 10_000
 
 
-class PlanningMap:
+class PlanningMap(SharedCells):
     """The received map, in an extent that also holds the goals.
 
     Attributes:
@@ -33,9 +34,10 @@ class PlanningMap:
         spec: their geometry.
     """
 
-    def __init__(self, cells: Cells, spec: GridSpec) -> None:
-        self.cells, self.spec = cells, spec
-        self._is_own = False  # the array
+    def __init__(self, cells: Cells, spec: GridSpec, *, is_own: bool = False) -> None:
+        """Args: cells; their geometry; whether nothing else uses the array."""
+        super().__init__(cells, is_own=is_own)
+        self.spec = spec
 
     def receive(
         self, cells: Cells, spec: GridSpec, changed: CellWindow | None = None
@@ -50,7 +52,8 @@ class PlanningMap:
         """
         offset = _offset(self.spec, spec)
         if offset is None:
-            self.__init__(cells, spec)  # type: ignore[misc] # another extent: starts afresh
+            self.replace(cells)
+            self.spec = spec
             return None
         if cells is self.cells:
             return CellWindow.whole(spec.shape) if changed is None else changed
@@ -60,11 +63,9 @@ class PlanningMap:
             changed = differences(self.cells[mine.slices], cells)
         here = changed.shifted(rows, columns)
         if mine == CellWindow.whole(self.spec.shape):
-            self.cells, self._is_own = cells, False
+            self.replace(cells)
         elif not changed.is_empty:
-            if not self._is_own:
-                self.cells, self._is_own = copied(self.cells), True
-            self.cells[here.slices] = cells[changed.slices]
+            self.writable()[here.slices] = cells[changed.slices]
         return NO_CELLS if changed.is_empty else here
 
     def hold(self, x: float, y: float, max_size_m: float) -> bool:
@@ -89,14 +90,12 @@ class PlanningMap:
             spec.height + sum(rows),
             spec.origin @ shift,
         )
-        self.cells, self._is_own = padded(self.cells, (rows, columns), UNKNOWN), True
+        self.replace(padded(self.cells, (rows, columns), UNKNOWN), is_own=True)
         return True
 
     def copy(self) -> "PlanningMap":
         """Return a map that changes independently."""
-        other = PlanningMap(copied(self.cells), self.spec)
-        other._is_own = True
-        return other
+        return PlanningMap(copied(self.cells), self.spec, is_own=True)
 
 
 def _sides(at: int, size: int, step: int, most: int) -> tuple[int, int] | None:

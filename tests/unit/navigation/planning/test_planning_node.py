@@ -15,7 +15,7 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
-from navette.navigation.grids import CellWindow, received_map
+from navette.navigation.grids import CellWindow, shared_cells
 from navette.navigation.planning import NewMap
 from navette.navigation.planning.planner import Planner
 from navette.runtime import Parameter, StaticTransformBroadcaster
@@ -343,7 +343,7 @@ def test_an_update_is_used_with_its_whole_map_without_a_copy(
         copies.append(array)
         return array.copy()
 
-    monkeypatch.setattr(received_map, "copied", counted)
+    monkeypatch.setattr(shared_cells, "copied", counted)
     world = World(graph).ready()
     world.begin_updates()
     world.send(8, 4)
