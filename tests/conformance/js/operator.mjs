@@ -56,7 +56,8 @@ try {
   await page.keyboard.down("ArrowUp");
   await pause(300);
   await page.evaluate(() => { window.blurred = performance.timeOrigin + performance.now(); dispatchEvent(new Event("blur")); });
-  await pause(300);
+  await pause(1000);
+  seen.released = Date.now();
   await page.keyboard.up("ArrowUp");
   seen.blurred = await page.evaluate(() => window.blurred);
 
