@@ -1,6 +1,6 @@
 """The nodes of a run and their classes, which are imported when they are needed.
 
-A drive without SLAM, AMCL, the filter and exploration starts 0.1 s earlier.
+A drive without SLAM, AMCL, the filter, zones and exploration starts 0.1 s earlier.
 """
 
 from navette.errors import UnknownNameError
