@@ -201,7 +201,7 @@ def _compile(cls: type[Message]) -> None:
     scope["_cls"] = cls
     setters = (scope[f"_set_{index}"] for index in range(len(nested)))
     _add_methods(cls, scope["__init__"], scope["_make_default"], setters)
-    _uncompiled.pop(cls, None)  # last: another thread may be waiting for the methods
+    _uncompiled.pop(cls, None)  # last: a thread that misses it here has the methods
 
 
 def _add_methods(
