@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import zenoh
 from transport_pairs import ZenohPair, message_of, until
 
 from navette.msgs import serialize, type_hash
@@ -76,7 +77,9 @@ def test_far_too_long_messages_are_not_assembled() -> None:
         KEY, lambda sample: sizes.append(len(sample.payload))
     )
     pair.settle()
-    publisher = pair.far_zenoh.session.zenoh.declare_publisher(KEY)
+    publisher = pair.far_zenoh.session.zenoh.declare_publisher(
+        KEY, congestion_control=zenoh.CongestionControl.BLOCK
+    )
     fine = serialize(String(data="fine"))
     for payload in (bytes(3_000_000), fine):
         publisher.put(payload, attachment=Attachment(1, 0, bytes(16)).encode())
