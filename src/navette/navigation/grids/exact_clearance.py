@@ -103,6 +103,25 @@ def signed_distance(outline: Array, x: float, y: float) -> float:
     return -distance if inside else distance
 
 
+@kernel(allocates=False)
+def _box(outline: Array) -> tuple[float, float, float, float]:
+    """Return the centre x, y of the box around a polygon (K, 2), and half its size."""
+    low_x = high_x = outline[0, 0]
+    low_y = high_y = outline[0, 1]
+    for k in range(1, outline.shape[0]):
+        low_x, high_x = min(low_x, outline[k, 0]), max(high_x, outline[k, 0])
+        low_y, high_y = min(low_y, outline[k, 1]), max(high_y, outline[k, 1])
+    x, y = 0.5 * (low_x + high_x), 0.5 * (low_y + high_y)
+    return x, y, high_x - x, high_y - y
+
+
+@kernel(allocates=False)
+def _off_box(box: tuple[float, float, float, float], x: float, y: float) -> float:
+    """Return a distance that is no larger than the one to the polygon in the box."""
+    off: float = max(abs(x - box[0]) - box[2], abs(y - box[1]) - box[3])
+    return off
+
+
 @kernel(
     allocates=False,
     signature="float64(float64[:, ::1], float64[:, ::1], float64, float64, float64,"
@@ -119,13 +138,16 @@ def body_distance(
 ) -> float:
     """Return the least signed distance (m) from the body to the points, ≤ horizon."""
     c, s = math.cos(yaw), math.sin(yaw)
+    box = _box(outline)
     best = horizon
     for i in range(points.shape[0]):
         dx, dy = points[i, 0] - x, points[i, 1] - y
         near = radius + best
         if near <= 0.0 or dx * dx + dy * dy >= near * near:
             continue
-        best = min(best, signed_distance(outline, c * dx + s * dy, c * dy - s * dx))
+        px, py = c * dx + s * dy, c * dy - s * dx
+        if _off_box(box, px, py) < best:
+            best = min(best, signed_distance(outline, px, py))
     return best
 
 
@@ -155,6 +177,7 @@ def exact_clearance(
     c, s = math.cos(yaw), math.sin(yaw)
     cos = c * frame.cos + s * frame.sin
     sin = s * frame.cos - c * frame.sin
+    box = _box(outline.vertices)
     best = horizon_m
     for row in range(first_row, last_row):
         line = obstacles.lethal[row]
@@ -167,6 +190,8 @@ def exact_clearance(
             if near <= 0.0 or gx * gx + gy * gy >= near * near:
                 continue
             bx, by = cos * gx + sin * gy, cos * gy - sin * gx
+            if _off_box(box, bx, by) - HALF_DIAGONAL * size >= best:
+                continue
             distance = signed_distance(outline.vertices, bx, by)
             if distance - HALF_DIAGONAL * size >= best:
                 continue
