@@ -27,6 +27,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 
 from navette.files.folders import cache_folder, is_private
+from navette.files.held_signals import held_signals
 from navette.files.kernel_archive import package_archive, select_processor
 from navette.files.machine_code import load_kernel
 
@@ -82,10 +83,16 @@ def kernel(
     compiled: Any = numba.njit(**options)(function)
     if compiled is not function:  # it is with NUMBA_DISABLE_JIT
         compiled._cache = KernelCache(function, options)
+        compiled.compile = functools.partial(_compile, compiled.compile)
         if signature is not None:
             compiled.compile(signature)
             compiled.disable_compile()
     return compiled
+
+
+def _compile(compile_or_load: Callable[[Any], Any], signature: Any) -> Any:
+    with held_signals():  # LLVM calls back with its machine code
+        return compile_or_load(signature)
 
 
 KernelFunction = Callable[..., Any]
