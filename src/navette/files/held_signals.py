@@ -4,7 +4,8 @@
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from types import FrameType
 from typing import Any
 
@@ -21,17 +22,21 @@ def held_signals() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield  # handlers run in the main thread
         return
-    received: list[tuple[int, FrameType | None]] = []
-    before: dict[int, Any] = {}
-    for number in _SIGNALS:
-        handler = signal.getsignal(number)
-        if callable(handler):  # not ignored, and not the system's default
-            before[number] = handler
-            signal.signal(number, lambda *arguments: received.append(arguments))
-    try:
+    with ExitStack() as after:  # each step runs, also if one before it raises
+        for number in _SIGNALS:
+            handler = signal.getsignal(number)
+            if callable(handler):  # not ignored, and not the system's default
+                received: list[FrameType | None] = []
+                after.callback(_call, handler, number, received)
+                after.callback(signal.signal, number, handler)
+                signal.signal(number, partial(_note, received))
         yield
-    finally:
-        for held, handler in before.items():
-            signal.signal(held, handler)
-        for arrived, frame in received:
-            before[arrived](arrived, frame)
+
+
+def _note(received: list[FrameType | None], _: int, frame: FrameType | None) -> None:
+    received.append(frame)
+
+
+def _call(handler: Any, number: int, received: list[FrameType | None]) -> None:
+    for frame in received:
+        handler(number, frame)
