@@ -4,8 +4,8 @@ Williams, Aldrich and Theodorou, "Model Predictive Path Integral Control: From T
 Parallel Computing" (2017), algorithm 2:
 
 1. shift the previous command sequence by the time that passed;
-2. add noise: K candidate sequences, a few of them fixed manoeuvres, and for drives that
-   steer or move sideways some that track the path;
+2. add noise: K candidate sequences, a few of them fixed manoeuvres, and some that track
+   the path;
 3. roll every candidate out with the robot's limits and sum its cost;
 4. average the candidates, weighted by exp(−cost / temperature);
 5. the first command of the average is the result.
@@ -114,9 +114,7 @@ class Mppi:
             fixed = np.concatenate([fixed, self._swerves(steps)], axis=2)
         self._fixed = fixed.astype(np.float32)
         self._commands = np.zeros((steps, len(self._most)), np.float32)
-        # Turns in place get a drive out of most tight places; others track the path.
-        self._tracked = 0 if self._drive == DIFFERENTIAL else len(SHARES)
-        count = samples + self._fixed.shape[2] + self._tracked
+        count = samples + self._fixed.shape[2] + len(_SHARES)
         self._candidates = np.empty((steps, len(self._most), count), np.float32)
         self._costs = np.empty(count, np.float32)
         self._turn = 0
@@ -156,16 +154,15 @@ class Mppi:
         motion = state.speed, state.side, state.turn_rate, self._curvature(state)
         fastest = max(abs(state.speed) + abs(state.side), sum(self._most[:-1]))
         table = PathTable.of(path, state.x, state.y, float(self._step_s * fastest))
-        if self._tracked:
-            fill_path_candidates(
-                candidates[:, :, -self._tracked :],
-                float(state.yaw),
-                table,
-                self._limits,
-                self._drive,
-                _SHARES,
-                self._step_s,
-            )
+        fill_path_candidates(
+            candidates[:, :, -len(_SHARES) :],
+            float(state.yaw),
+            table,
+            self._limits,
+            self._drive,
+            _SHARES,
+            self._step_s,
+        )
         rollout_costs(
             candidates,
             np.array((state.yaw, *motion)),

@@ -37,7 +37,8 @@ def fill_path_candidates(
     """Fill commands (T, D, K) of K sequences that track the path.
 
     The robot is at the origin with heading ``yaw``; the path is relative to it. Each
-    step moves towards the pose a lookahead farther on, not past a change of direction.
+    step moves towards the pose a lookahead farther on, not past a change of direction,
+    or turns in place where the path does.
     """
     poses = path.poses
     last = poses.shape[1] - 1 - path.reach
@@ -79,7 +80,8 @@ def fill_path_candidates(
                     commands[t, 1, k] = curvature
                     turn = speed * curvature
                 else:
-                    turn = _clipped(speed * curvature, limits.max_turn_rate)
+                    turn = speed * curvature if direction else _HEADING_GAIN * off
+                    turn = _clipped(turn, limits.max_turn_rate)
                     commands[t, 1, k] = turn
             commands[t, 0, k] = speed
             x += step_s * (cos * speed - sin * side)

@@ -140,6 +140,33 @@ def test_a_narrow_passage_is_driven_through() -> None:
     assert min(o.clearance_m for o in result.outputs) > 0.01
 
 
+JACKAL = ControlParams(
+    method="mppi",
+    cruise_speed_mps=2.0,
+    reverse_speed_mps=0.4,
+    max_speed_mps=2.0,
+    max_turn_rate_radps=1.5,
+    acceleration_mps2=2.0,
+    deceleration_mps2=2.0,
+    turn_acceleration_radps2=4.0,
+    goal_tolerance_m=0.1,
+    footprint_m=(0.25, 0.215, -0.25, 0.215, -0.25, -0.215, 0.25, -0.215),
+)
+
+
+def test_the_last_centimetres_in_a_narrow_place_are_driven() -> None:
+    """4 cm beside the body and a wall ahead: nearly all noise collides."""
+    robot, plant = PredictiveFollower(JACKAL), Plant(Pose2(0.0, 0.0, 0.0))
+    along, across = np.arange(-1.0, 0.6, 0.01), np.arange(-0.3, 0.3, 0.01)
+    walls = [np.column_stack([along, 0 * along + y]) for y in (0.26, -0.26)]
+    walls.append(np.column_stack([0 * across + 0.56, across]))
+    robot.set_obstacles(np.concatenate(walls), 0.0)
+    robot.set_path(tangent_path(np.array([[0, 0], [0.25, 0.0]])))
+    result = run(robot, plant, 20.0)
+    assert result.final.state == "reached"
+    assert min(o.clearance_m for o in result.outputs) > 0.02
+
+
 CAR = ControlParams(
     drive="ackermann",
     method="mppi",

@@ -12,6 +12,7 @@ from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_candidates import fill_path_candidates
 from navette.navigation.control.rollouts import (
+    METRES_PER_RADIAN,
     PathTable,
     PathWindow,
     RolloutBody,
@@ -117,7 +118,7 @@ def test_a_post_beside_the_path_repels_every_corner_of_the_body() -> None:
     assert max(abeam) < -0.03
 
 
-@pytest.mark.parametrize("drive", ["ackermann", "omni"])
+@pytest.mark.parametrize("drive", ["differential", "ackermann", "omni"])
 def test_candidates_track_the_path(drive: str) -> None:
     """At half the speed, a bend of 1.5 m and the end of the path are kept."""
     angle = np.arange(0, 1.5, 0.05)
@@ -134,12 +135,38 @@ def test_candidates_track_the_path(drive: str) -> None:
     fill_path_candidates(commands, 0.0, table, limits, code, shares, 0.1)
     pose, apart = Pose2(0.0, 0.0, 0.0), []
     for step in commands[:, :, 0].astype(float):
-        turn = step[0] * step[1] if drive == "ackermann" else step[2]
+        turn = step[0] * step[1] if drive == "ackermann" else step[-1]
         side = step[1] if drive == "omni" else 0.0
         pose = advanced(pose, step[0], turn, 0.1, side=side)
         apart.append(abs(math.hypot(pose.x, pose.y - 1.5) - 1.5))
     assert max(apart) < 0.05
     assert math.dist((pose.x, pose.y), (path.x[-1], path.y[-1])) < 0.1
+
+
+def test_candidates_back_up_and_turn_in_place_where_the_path_does() -> None:
+    """As in front of a wall: back 4 cm, turn by 90°, and drive on."""
+    back = [(-0.02 * i, 0.0, 0.0) for i in range(2)]
+    turn = [(-0.04, 0.0, 0.1 * i) for i in range(16)]
+    poses = np.array([*back, *turn, *[(-0.04, 0.05 * i, 1.5) for i in range(20)]])
+    step = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+    spin = METRES_PER_RADIAN * np.abs(np.diff(poses[:, 2]))
+    measure = np.concatenate([[0.0], np.cumsum(step + spin)])
+    direction = np.array([-1] * 2 + [0] * 15 + [1] * 21, np.int8)
+    x, y, yaw = np.ascontiguousarray(poses.T)
+    path = PathWindow(x, y, np.cos(yaw), np.sin(yaw), measure, direction)
+    commands = np.zeros((60, 2, 1), np.float32)
+    table = PathTable.of(path, 0.0, 0.0, 0.1)
+    shares, limits = np.array([0.2], np.float32), make("differential")._limits
+    code = DRIVES.index("differential")
+    fill_path_candidates(commands, 0.0, table, limits, code, shares, 0.1)
+    pose = Pose2(0.0, 0.0, 0.0)
+    for speed, rate in commands[:, :, 0].astype(float).tolist():
+        pose = advanced(pose, speed, rate, 0.1)
+        if pose.yaw < 1.0:
+            assert -0.06 < pose.x < 0.01
+            assert abs(pose.y) < 0.02, "it turns in place"
+    assert pose.yaw == pytest.approx(1.5, abs=0.2)
+    assert pose.y > 0.3
 
 
 @pytest.mark.parametrize(("y", "yaw"), [(0.04, 0.0), (0.04, 0.19), (0.05, -0.19)])
