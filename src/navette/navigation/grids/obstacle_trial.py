@@ -43,6 +43,6 @@ def load_obstacle_kernels(footprint: Footprint) -> None:
     trial.remember_points(points)
     trial.receive_points(points)
     for _ in range(2):  # the second map is compared with the first
-        trial.remember(known, None, 0, 0)
+        trial.remember(known, None, 0, 0, LETHAL)
     trial.receive(grid, 0)
     trial.place(0, LETHAL, reach_m=1.0, unseen_reach_m=1.0)

@@ -110,7 +110,12 @@ class ObstacleTracker:
         self._costmap, self._costmap_ns = msg, now_ns
 
     def remember(
-        self, known: ReceivedMap, part: MapPart | None, stamp_ns: int, now_ns: int
+        self,
+        known: ReceivedMap,
+        part: MapPart | None,
+        stamp_ns: int,
+        now_ns: int,
+        lethal_cost: int,
     ) -> None:
         """Use a map, in the map frame, for what the costmap does not show.
 
@@ -121,16 +126,17 @@ class ObstacleTracker:
             part: changes the map first; None: the whole map is new.
             stamp_ns: stamp of the map.
             now_ns: time of the node's clock.
+            lethal_cost: value from which a cell is an obstacle.
         """
         near = self._near_robot(known.spec, now_ns)
         before = self._seen
         is_shared = before is not None and before.cells is known.cells
         if is_shared and part is not None and _loses(part, known.cells, near):
-            known.share()  # what the map loses has been seen nevertheless
+            known.share()  # free space that the map loses has been seen nevertheless
         known.update(part)
         self._map.receive(known.cells, known.spec, stamp_ns)
         self._newest = Layer(known.cells, known.spec)
-        self._seen = _seen_also(self._newest, before, near)
+        self._seen = _seen_also(self._newest, before, near, lethal_cost)
         is_whole = self._seen is self._newest
         self._seen_window = CellWindow.whole(known.spec.shape) if is_whole else near
 
@@ -218,7 +224,7 @@ class ObstacleTracker:
     ) -> NDArray[np.float64]:
         """Return the cells near the body that neither a map nor the costmap has seen.
 
-        What a request has cleared from the map has been seen nevertheless.
+        Free space that a request has cleared from the map has been seen nevertheless.
         """
         seen = self._seen_around(around, min(reach_m, FARTHEST_M))
         layers = (here,) if seen is None else (seen, here)
@@ -267,19 +273,24 @@ def _cells_around(pose: Pose2, reach_m: float, spec: GridSpec) -> CellWindow:
     return here.grown(math.ceil(reach_m / spec.resolution), spec.shape)
 
 
-def _seen_also(now: Layer, before: Layer | None, near: CellWindow) -> Layer:
+def _seen_also(
+    now: Layer, before: Layer | None, near: CellWindow, lethal_cost: int
+) -> Layer:
     """Return a layer whose cells in a window are known where they are in one of two.
 
-    The layer of now if it shows all of them, otherwise one of the window only. An empty
-    window: the robot is far outside of the map.
+    Obstacles that only the layer before shows are unknown: they may still stand where
+    no sensor looks. The layer of now if it shows all cells, otherwise one of the window
+    only. An empty window: the robot is far outside of the map.
     """
     if before is None or near.is_empty:
         return now
     shift = _shift_of_cells(now.spec, before.spec)
     if shift is not None and not _has_lost(now.cells, before.cells, near, *shift):
         return now
-    seen = Layer(now.cells[near.slices].copy(), near.spec_in(now.spec))
+    here = now.cells[near.slices]
+    seen = Layer(here.copy(), near.spec_in(now.spec))
     merge(*seen, *before, "max")
+    seen.cells[(here == UNKNOWN) & (seen.cells >= lethal_cost)] = UNKNOWN
     return seen
 
 

@@ -35,8 +35,9 @@ from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.scan_beams import ScanBeams
 from navette.navigation.mapping.vanished import VanishedCells
 
-# Beyond the body, obstacles that the sensors do not see can be touched in a turn.
-_BESIDE_M = 0.3
+# So far beyond the body, obstacles that the sensors do not see can be touched: in a
+# turn, or by a robot that backs up along its way, as recoveries do.
+_BESIDE_M = 1.0
 
 
 class BodyMotion(NamedTuple):

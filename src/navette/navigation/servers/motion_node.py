@@ -105,7 +105,9 @@ class MotionNode(MapReaderNode):
         """Use the map for what the costmap does not show."""
         maps = self._maps
         assert maps.map is not None, "a map has arrived"
-        self._obstacles.remember(maps.map, part, maps.stamp_ns, self._now_ns)
+        self._obstacles.remember(
+            maps.map, part, maps.stamp_ns, self._now_ns, self.params.lethal_cost
+        )
 
     def on_keepout_zones(self, msg: OccupancyGrid) -> None:
         """Keep clear of zones as of obstacles."""

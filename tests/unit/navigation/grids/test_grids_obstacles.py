@@ -213,7 +213,7 @@ def test_cells_that_a_map_has_shown_stay_seen() -> None:
     now = np.full(spec.shape, UNKNOWN, np.int8)
     now[1, 2] = LETHAL
     whole = CellWindow.whole(spec.shape)
-    seen = _seen_also(Layer(now, spec), Layer(before, spec), whole)
+    seen = _seen_also(Layer(now, spec), Layer(before, spec), whole, LETHAL)
     assert (seen.cells[0] == UNKNOWN).all()
     assert (seen.cells[1:] != UNKNOWN).all()
     assert seen.cells[1, 2] == LETHAL, "what is known now counts"
@@ -225,8 +225,8 @@ def test_a_map_that_shows_no_less_is_used_as_it_is() -> None:
     first = Layer(np.full(spec.shape, UNKNOWN, np.int8), spec)
     more = Layer(np.zeros(spec.shape, np.int8), spec)
     whole = CellWindow.whole(spec.shape)
-    assert _seen_also(first, None, whole) is first
-    assert _seen_also(more, first, whole) is more
+    assert _seen_also(first, None, whole, LETHAL) is first
+    assert _seen_also(more, first, whole, LETHAL) is more
 
 
 def test_a_map_that_grew_keeps_what_the_smaller_one_has_shown() -> None:
@@ -234,7 +234,7 @@ def test_a_map_that_grew_keeps_what_the_smaller_one_has_shown() -> None:
     large = GridSpec(0.1, 26, 24, Pose2(-1.0, -1.0, 0.0))
     now = Layer(np.full(large.shape, UNKNOWN, np.int8), large)
     before = Layer(np.zeros(small.shape, np.int8), small)
-    seen = _seen_also(now, before, CellWindow.whole(large.shape))
+    seen = _seen_also(now, before, CellWindow.whole(large.shape), LETHAL)
     inside = seen.cells[10:14, 10:16]
     assert (inside != UNKNOWN).all()
     assert (seen.cells != UNKNOWN).sum() == inside.size
@@ -245,7 +245,7 @@ def test_a_map_that_grew_keeps_what_the_smaller_one_has_shown() -> None:
         (CellWindow(0, 24, 0, 10), False),
         (CellWindow(0, 11, 0, 11), True),
     ):
-        assert (_seen_also(now, before, window) is not now) == has_lost, window
+        assert (_seen_also(now, before, window, LETHAL) is not now) == has_lost, window
 
 
 def test_a_map_that_only_grew_is_used_as_it_is() -> None:
@@ -255,9 +255,11 @@ def test_a_map_that_only_grew_is_used_as_it_is() -> None:
     cells = np.full(large.shape, UNKNOWN, np.int8)
     cells[4:8, 2:8] = 0
     now, before = Layer(cells, large), Layer(np.zeros(small.shape, np.int8), small)
-    assert _seen_also(now, before, CellWindow.whole(large.shape)) is now
+    assert _seen_also(now, before, CellWindow.whole(large.shape), LETHAL) is now
     cells[7, 7] = UNKNOWN
-    assert _seen_also(now, before, CellWindow.whole(large.shape)).cells[7, 7] == 0
+    assert (
+        _seen_also(now, before, CellWindow.whole(large.shape), LETHAL).cells[7, 7] == 0
+    )
 
 
 AFAR = Pose2(500.0, 0.0, 0.0)
@@ -289,11 +291,11 @@ def test_only_the_cells_near_the_robot_are_kept_of_a_map_that_lost_some() -> Non
     values = np.array([UNKNOWN, FREE, LETHAL], np.int8)
     before, now = rng.choice(values, (2, *spec.shape))
     window = CellWindow(5, 25, 10, 50)
-    seen = _seen_also(Layer(now, spec), Layer(before, spec), window)
-    known = ((now != UNKNOWN) | (before != UNKNOWN))[window.slices]
+    seen = _seen_also(Layer(now, spec), Layer(before, spec), window, LETHAL)
+    known = ((now != UNKNOWN) | (before == FREE))[window.slices]
     np.testing.assert_array_equal(seen.cells != UNKNOWN, known)
-    later = _seen_also(Layer(now, spec), seen, CellWindow(0, 20, 20, 60))
-    again = ((now != UNKNOWN) | (before != UNKNOWN))[5:20, 20:50]
+    later = _seen_also(Layer(now, spec), seen, CellWindow(0, 20, 20, 60), LETHAL)
+    again = ((now != UNKNOWN) | (before == FREE))[5:20, 20:50]
     np.testing.assert_array_equal(later.cells[5:, :30] != UNKNOWN, again)
     only_now = now[:20, 20:60] != UNKNOWN
     np.testing.assert_array_equal(later.cells[:, 30:] != UNKNOWN, only_now[:, 30:])
@@ -305,11 +307,11 @@ def test_a_robot_that_leaves_what_is_kept_sees_the_newest_map() -> None:
     tracker = ObstacleTracker(poses, outline, hand_m=0.0)
     spec = GridSpec(0.1, 600, 100, Pose2(-5.0, -5.0, 0.0))
     cells = np.zeros(spec.shape, np.int8)
-    tracker.remember(ReceivedMap(cells, spec), None, 0, 0)
+    tracker.remember(ReceivedMap(cells, spec), None, 0, 0, LETHAL)
     cells = cells.copy()
     cells[50:60, 60:70] = UNKNOWN  # near the robot
     cells[50:60, 400:410] = UNKNOWN  # 35 m ahead
-    tracker.remember(ReceivedMap(cells, spec), None, 1, 0)
+    tracker.remember(ReceivedMap(cells, spec), None, 1, 0, LETHAL)
     unseen = []
     for x in (0.0, 1.0, 36.0):
         poses.pose = Pose2(x, 0.0, 0.0)
@@ -321,6 +323,27 @@ def test_a_robot_that_leaves_what_is_kept_sees_the_newest_map() -> None:
     assert unseen == [0, 0, 100]
 
 
+def test_an_obstacle_that_is_cleared_from_the_map_is_not_seen_any_more() -> None:
+    """A robot that backs up would touch it: its lidar does not look there."""
+    outline = Footprint.from_flat((0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2))
+    tracker = ObstacleTracker(Driving(), outline, hand_m=0.0)
+    spec = GridSpec(0.1, 100, 100, Pose2(-5.0, -5.0, 0.0))
+    cells = np.zeros(spec.shape, np.int8)
+    cells[45:48, 40:42] = LETHAL  # behind the robot
+    tracker.remember(ReceivedMap(cells, spec), None, 0, 0, LETHAL)
+    cleared = cells.copy()
+    cleared[30:70, 30:70] = UNKNOWN
+    for stamp_ns in (1, 2):  # also in the map after the next
+        tracker.remember(ReceivedMap(cleared, spec), None, stamp_ns, 0, LETHAL)
+    grid = np.full((3, 3), UNKNOWN, np.int8)
+    tracker.receive(grid_to_message(grid, GridSpec(0.1, 3, 3), "map", 1), 0)
+    placed = tracker.place(0, LETHAL, reach_m=3.0, unseen_reach_m=3.0)
+    assert placed is not None
+    assert len(placed.points) == 0
+    centers = np.array([(x, y) for y in (-0.45, -0.35, -0.25) for x in (-0.95, -0.85)])
+    np.testing.assert_allclose(placed.unseen, centers)
+
+
 def test_a_new_map_may_be_far_from_the_robot() -> None:
     outline = Footprint.from_flat((0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2))
     tracker = ObstacleTracker(Driving(), outline, hand_m=0.0)
@@ -328,7 +351,7 @@ def test_a_new_map_may_be_far_from_the_robot() -> None:
         (GridSpec(0.1, 60, 60, Pose2(-3.0, -3.0, 0.0)), GridSpec(0.05, 40, 40, AFAR))
     ):
         cells = np.zeros(spec.shape, np.int8)
-        tracker.remember(ReceivedMap(cells, spec), None, stamp_ns, 0)
+        tracker.remember(ReceivedMap(cells, spec), None, stamp_ns, 0, LETHAL)
     grid = grid_to_message(np.zeros((3, 3), np.int8), GridSpec(0.1, 3, 3), "map", 1)
     tracker.receive(grid, 0)
     placed = tracker.place(0, LETHAL, reach_m=1.0, unseen_reach_m=1.0)
@@ -349,8 +372,8 @@ def test_parts_of_a_map_give_the_same_obstacles_as_whole_maps(seed: int) -> None
     by_parts = ObstacleTracker(poses, outline, hand_m=0.0)
     by_wholes = ObstacleTracker(poses, outline, hand_m=0.0)
     known = ReceivedMap(cells.copy(), spec)
-    by_parts.remember(known, None, 0, 0)
-    by_wholes.remember(ReceivedMap(cells.copy(), spec), None, 0, 0)
+    by_parts.remember(known, None, 0, 0, LETHAL)
+    by_wholes.remember(ReceivedMap(cells.copy(), spec), None, 0, 0, LETHAL)
     for stamp_ns in range(1, 8):
         poses.pose = Pose2(*rng.uniform(-2.0, 2.0, 2).tolist(), 0.0)
         row, column = rng.integers(0, 80, 2).tolist()
@@ -358,8 +381,8 @@ def test_parts_of_a_map_give_the_same_obstacles_as_whole_maps(seed: int) -> None
         values = np.array([UNKNOWN, FREE, LETHAL], np.int8)
         part = rng.choice(values, window.shape, p=rng.dirichlet((0.3, 1, 1)))
         cells[window.slices] = part
-        by_parts.remember(known, MapPart(part, window), stamp_ns, 0)
-        by_wholes.remember(ReceivedMap(cells.copy(), spec), None, stamp_ns, 0)
+        by_parts.remember(known, MapPart(part, window), stamp_ns, 0, LETHAL)
+        by_wholes.remember(ReceivedMap(cells.copy(), spec), None, stamp_ns, 0, LETHAL)
         np.testing.assert_array_equal(known.cells, cells)
         grid = grid_to_message(costmap, GridSpec(0.1, 3, 3), "map", stamp_ns)
         placed = []

@@ -228,7 +228,7 @@ def test_clearing_keeps_what_stands_beside_the_body_in_a_blind_spot(
 ) -> None:
     spec = GridSpec(0.1, 40, 40, Pose2(-2.0, -2.0, 0.0))
     here = Pose2(0.0, 0.0, 0.0)
-    hits = np.array([(-0.32, 0.03), (0.52, 0.03), (-1.2, 0.03)])
+    hits = np.array([(-0.9, 0.03), (0.52, 0.03), (-1.6, 0.03)])
     memory = MapMemory(
         MapMemoryParams(
             fusion=fusion, size_m=6.0, footprint_m=(0.2, 0.2, -0.2, 0.0, 0.2, -0.2)
