@@ -272,24 +272,29 @@ def tight_pose(points: Array, outline: Array, poses: Array, body: Array) -> int:
 
 @kernel(
     allocates=False,
-    signature="float64(float64[:, ::1], float64[:, ::1], float64[::1], int64, float64)",
+    signature="int64(float64[:, ::1], float64[:, ::1], float64[::1], float64,"
+    " float64, float64, int64)",
 )
-def seen_motion(
-    unseen: Array, outline: Array, motion: Array, poses: int, radius: float
-) -> float:
-    """Return how long (s) a motion covers none of the points ``unseen`` (N, 2).
+def _first_unseen(
+    unseen: Array,
+    outline: Array,
+    motion: Array,
+    radius: float,
+    begin_s: float,
+    step_s: float,
+    count: int,
+) -> int:
+    """Return which of the poses at ``begin_s`` + i ``step_s`` covers a point first.
 
-    A point under the edge of the body may stay there, but not get further under it.
-    Other arguments as in :func:`free_motion`.
+    i is 1 … count, or count + 1 where none does.
     """
-    duration = motion[6]
-    first = poses + 1
+    first = count + 1
     for k in range(unseen.shape[0]):
         least = np.inf
         for i in range(first):
             x, y, yaw = motion[0], motion[1], motion[2]
             if i:
-                x, y, yaw = _moved(motion, duration * i / poses)
+                x, y, yaw = _moved(motion, begin_s + i * step_s)
             dx, dy = unseen[k, 0] - x, unseen[k, 1] - y
             if dx * dx + dy * dy >= radius * radius:
                 continue
@@ -300,5 +305,29 @@ def seen_motion(
             elif there < min(0.0, least):
                 first = i
                 break
-    free: float = duration if first > poses else duration * (first - 1) / poses
-    return free
+    return first
+
+
+@kernel(
+    allocates=False,
+    signature="float64(float64[:, ::1], float64[:, ::1], float64[::1], int64, float64)",
+)
+def seen_motion(
+    unseen: Array, outline: Array, motion: Array, poses: int, radius: float
+) -> float:
+    """Return how long (s) a motion covers none of the points ``unseen`` (N, 2).
+
+    A point under the edge of the body may stay there, but not get further under it.
+    Where the motion ends the poses are finer: a robot may have been put down with less
+    than a step of space behind it. Other arguments as in :func:`free_motion`.
+    """
+    duration: float = motion[6]
+    if poses == 0:
+        return duration
+    step_s = duration / poses
+    first = _first_unseen(unseen, outline, motion, radius, 0.0, step_s, poses)
+    if first > poses:
+        return duration
+    begin_s, finer_s = (first - 1) * step_s, step_s / _FINER
+    finer = _first_unseen(unseen, outline, motion, radius, begin_s, finer_s, _FINER)
+    return begin_s + (finer - 1) * finer_s

@@ -110,8 +110,16 @@ def test_the_body_does_not_back_into_unseen_space() -> None:
     assert check.reverse_share(ORIGIN, 1.0) == pytest.approx(scale)
 
 
+def test_less_than_a_step_of_seen_space_is_used_to_a_centimetre() -> None:
+    """As behind a robot that was put down facing a wall."""
+    check = blind_behind(-0.48)  # the nearest centres lie 0.03 m behind the body
+    assert 0.1 <= check.free_time(ORIGIN, -0.2, 0.0, 5.0) <= 0.15 + 1e-9
+    scale = check.check(ORIGIN, VelocityCommand(-0.4, 0.0)).scale
+    assert 0.02 < 0.4 * scale * (0.2 + 0.4 * scale / 2) <= 0.03 + 1e-6
+
+
 def test_a_body_over_the_border_of_unseen_space_does_not_enter_further() -> None:
-    check = blind_behind(-0.48)
+    check = blind_behind(-0.43)  # 2 cm over the nearest centres
     assert check.check(ORIGIN, VelocityCommand(-0.3, 0.0)).scale == 0.0
     assert check.check(ORIGIN, VelocityCommand(0.3, 0.0)).scale == 1.0
 
