@@ -102,9 +102,10 @@ class StallMonitor:
             _Step(dt, speed * dt, max(0.0, moved) * dt,
                   abs(wanted.turn_rate) * dt, max(0.0, turned) * dt)
         )  # fmt: skip
-        if not self._stands():
+        blocked = self._blocked(given)
+        if blocked is None:
             return False
-        self._bump, self._bump_age_s = (pose, given), 0.0
+        self._bump, self._bump_age_s = (pose, blocked), 0.0
         self.reset()
         return True
 
@@ -122,7 +123,8 @@ class StallMonitor:
             return False
         given = _Motion(*command)
         if bumped.along(bumped) == 0.0:
-            return given.along(given) == 0.0 and given.turn_rate * bumped.turn_rate > 0
+            in_place = given.along(given) <= _DRIFT_MPS**2
+            return in_place and given.turn_rate * bumped.turn_rate > 0
         towards = given.along(bumped) / math.sqrt(bumped.along(bumped))
         return towards > _DRIFT_MPS
 
@@ -151,15 +153,19 @@ class StallMonitor:
         while self._span_s - self._steps[0].dt >= longest_s:
             self._span_s -= self._steps.popleft().dt
 
-    def _stands(self) -> bool:
+    def _blocked(self, given: _Motion) -> _Motion | None:
+        """Return the part of a command in which the robot does not move."""
         if self._span_s < self._time_s - 1e-9:
-            return False
+            return None
         ahead = sum(step.ahead for step in self._steps)
         if ahead >= _LEAST_M:
-            return sum(step.moved for step in self._steps) < _LEAST_SHARE * ahead
+            moved = sum(step.moved for step in self._steps)
+            return given if moved < _LEAST_SHARE * ahead else None
         turn = sum(step.turn for step in self._steps)
         turned = sum(step.turned for step in self._steps)
-        return turn >= _LEAST_RAD and turned < _LEAST_SHARE * turn
+        if turn < _LEAST_RAD or turned >= _LEAST_SHARE * turn:
+            return None
+        return _Motion(0.0, given.turn_rate)
 
 
 def _common(a: float, b: float) -> float:

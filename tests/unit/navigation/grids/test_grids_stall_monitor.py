@@ -129,3 +129,15 @@ def test_a_stall_behind_a_slow_network_is_found_after_the_delay() -> None:
         for _ in range(30)
     ]
     assert 10 <= found.index(True) <= 16
+
+
+def test_a_turn_that_is_blocked_does_not_forbid_to_back_up() -> None:
+    """The wheels slip sideways: the robot backs up as commanded, but does not turn."""
+    monitor = StallMonitor(0.3)
+    stalls = [monitor.update((-0.05, 1.0), HERE, (-0.05, 0.0), DT) for _ in range(20)]
+    assert any(stalls)
+    assert monitor.forbids((0.0, 1.0), HERE)
+    assert monitor.forbids((-0.01, 0.5), HERE), "sampled commands are never exact"
+    assert not monitor.forbids((0.0, -1.0), HERE)
+    assert not monitor.forbids((-0.3, 0.0), HERE)
+    assert not monitor.forbids((-0.3, 0.5), HERE)
