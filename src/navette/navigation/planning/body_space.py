@@ -14,16 +14,20 @@ from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec, make_outline, signed_distance
-from navette.navigation.planning.drive_flood import (
-    HEADING_RAD,
-    HEADINGS,
+from navette.navigation.grids import (
+    GridSpec,
+    ObstacleGrid,
+    make_obstacles,
+    make_outline,
+    signed_distance,
+)
+from navette.navigation.planning.drive_path import (
     DriveMoves,
     DrivePath,
-    Masks,
     find_drive_path,
     wrapped,
 )
+from navette.navigation.planning.pose_flood import HEADING_RAD, HEADINGS, Fit, Masks
 
 _WITHIN = 5  # headings tried within one bin, its limits included
 
@@ -72,8 +76,9 @@ class BodySpace:
         _close(closed, lethal, np.ascontiguousarray(stamp[::-1, ::-1]))
         inner = slice(reach, -reach or None)
         self._open = np.ascontiguousarray(~closed[inner, inner])
-        self._spec, self._start = spec, start
+        self._spec, self._start, self._outline = spec, start, outline
         self.start = spec.cell_of(start.x, start.y)
+        self._open_at_start = self._open[self.start]
         self._open[self.start] = ~np.uint64(0)
 
     def close(self, cells: NDArray[np.bool_]) -> None:
@@ -97,17 +102,51 @@ class BodySpace:
         _flood(self._open, reached, np.ascontiguousarray(cells, np.int64), stack)
         return np.asarray(reached != 0)
 
+    def fit(
+        self, obstacles: ObstacleGrid, margin_m: float, near_m: float, reach_m: float
+    ) -> Fit:
+        """Return the check of exact poses, which poses that are open here do not need.
+
+        Those in the cell of the start need it where obstacles close them.
+
+        Args:
+            obstacles: in the map frame.
+            margin_m: clearance that the body keeps.
+            near_m: clearance that it keeps near the start.
+            reach_m: how far from the start that is.
+        """
+        sure = self._open.copy()
+        sure[self.start] = self._open_at_start
+        return Fit(
+            sure,
+            obstacles,
+            self._outline,
+            np.array(self._spec.origin),
+            np.array(self._start),
+            self._spec.resolution,
+            margin_m,
+            near_m,
+            reach_m,
+        )
+
     def drive_to(
         self,
         cells: NDArray[np.int64],
         moves: DriveMoves,
         yaw: float | None = None,
         tolerance_rad: float = 0.0,
+        seen: "BodySpace | None" = None,
+        fit: Fit | None = None,
     ) -> DrivePath:
         """Return a path by the moves of a drive from the start to one of cells (N, 2).
 
         With a yaw (map) the last heading is within the tolerance of it, or the nearest.
+        In reverse and sideways it moves between poses that are open in ``seen`` too.
+        ``fit`` decides about the exact poses; default: all within open cells fit.
         """
+        if fit is None:
+            nothing = make_obstacles(np.zeros((1, 1), np.uint8), self._spec)
+            fit = self.fit(nothing, 0.0, 0.0, 0.0)._replace(sure=self._open)
         frame = self._spec.origin
         local = frame.inverse() @ self._start
         headings = np.arange(HEADINGS)
@@ -115,7 +154,14 @@ class BodySpace:
             off = np.abs(wrapped(headings * HEADING_RAD + (self._start.yaw - yaw)))
             headings = headings[off <= max(tolerance_rad, HEADING_RAD / 2 + 1e-9)]
         found = find_drive_path(
-            self._open, local, self._spec.resolution, cells, headings, moves
+            self._open,
+            self._open if seen is None else seen._open,
+            local,
+            self._spec.resolution,
+            cells,
+            headings,
+            moves,
+            fit,
         )
         if found.poses is None:
             return found

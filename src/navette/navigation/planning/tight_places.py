@@ -7,6 +7,7 @@ the budget unless these prove that no path exists.
 
 import math
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,11 @@ from navette.geometry import Pose2
 from navette.navigation.grids import (
     UNKNOWN,
     exact_clearances,
-    make_obstacles,
     make_outline,
 )
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
-from navette.navigation.planning.drive_flood import DriveMoves
+from navette.navigation.planning.drive_path import DriveMoves, DrivePath
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
@@ -30,12 +30,12 @@ from navette.navigation.planning.own_methods import Goal
 from navette.navigation.planning.params import LEAST_EXPANSIONS, PlannerParams
 from navette.navigation.planning.path_shape import (
     Poses,
-    directions,
     joined,
     turn_in_place,
 )
 from navette.navigation.planning.plan import Plan
 from navette.navigation.planning.planning_grid import BodyShape
+from navette.navigation.planning.pose_flood import Fit
 from navette.navigation.planning.prepared_map import PreparedMap
 from navette.navigation.planning.route import GridRouter
 
@@ -44,6 +44,7 @@ _QUICK_SHARE = 4
 # In a passage the clearance varies by this, and is not planned below the least, which
 # is what the controller keeps: it would refuse a path with less.
 _SWAY_M, _LEAST_M = 0.01, 0.025
+_SLACK_M = 1e-3  # a body at rest is not closer than itself
 
 
 def quick_expansions(params: PlannerParams) -> int:
@@ -123,60 +124,67 @@ class TightPlanner:
     def _exhaustive(self, margin_m: float) -> Plan:
         """Return a path by all motions on a fine grid, or that there is none.
 
-        These paths are rough, of shorter motions than the search has, and off the
-        cells' centres: they need only the least margin in the end. The first attempt
-        keeps the margin wherever in a cell the robot is. ``search_limit``: the motions
-        are too many, or the body does not fit along the paths that were found, which
-        proves nothing about others.
+        These paths are rough, of shorter motions than the search has. The first keeps
+        the margin wherever in a cell the robot is, the second at its exact poses.
+        ``search_limit``: the motions are too many.
         """
         within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
-        cells = self._ends()
-        moves = DriveMoves(self.params.drive, self.params.min_turning_radius_m)
-        yaw, tolerance = self.goal.yaw, self.params.goal_yaw_tolerance_rad
-        outcome = Outcome.NO_PATH
-        for more_m in (within_cell_m, 0.0):
-            space = self._space(margin_m + more_m)
-            # Where the robot stands it may have less, and keeps that.
-            space.open_near_start(self._space(0.0), self._map.body.circumscribed_m)
+        reach_m = self._map.body.circumscribed_m
+        # Where the robot stands it may have less, and keeps that.
+        near_m = min(margin_m, self._clearance_here_m - _SLACK_M)
+        near = self._space(near_m - within_cell_m)
+        sure = self._space(margin_m + within_cell_m)
+        obstacles = self._finer.grid().exact_obstacles
+        fit = sure.fit(obstacles, margin_m, near_m, reach_m)
+        seen = self._seen_space(within_cell_m)
+        cells, outcome = self._ends(), Outcome.NO_PATH
+        for space in (sure, self._space(margin_m)):
+            space.open_near_start(near, reach_m)
             if not self.params.allow_unknown:
                 space.close(self._closer.occupancy == UNKNOWN)
             if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
                 continue
-            for each in (moves, moves._replace(reverses=False)):
-                path = space.drive_to(cells, each, yaw, tolerance)
-                if path.poses is None:  # nor is there one without reversing
-                    outcome = outcome if path.is_proof else Outcome.SEARCH_LIMIT
-                    break
-                outcome = Outcome.SEARCH_LIMIT
-                rough = self._rough_plan(path.poses, min(margin_m, self._least_m))
-                if rough is not None:
-                    return rough
+            path = self._driven(space, cells, seen, fit)
+            if path.poses is None:
+                outcome = outcome if path.is_proof else Outcome.SEARCH_LIMIT
+                continue
+            outcome = Outcome.SEARCH_LIMIT
+            rough = self._rough_plan(path.poses, min(margin_m, self._least_m))
+            if rough is not None:
+                return rough
         return Plan(outcome)
+
+    def _driven(
+        self, space: BodySpace, cells: NDArray[np.int64], seen: BodySpace, fit: Fit
+    ) -> DrivePath:
+        """Return a path of the drive through a space to one of cells (N, 2)."""
+        params, yaw = self.params, self.goal.yaw
+        moves = DriveMoves(params.drive, params.min_turning_radius_m)
+        return space.drive_to(
+            cells, moves, yaw, params.goal_yaw_tolerance_rad, seen, fit
+        )
 
     def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:
         """Return the plan of poses from all motions, if the body fits along them."""
         if self.goal.yaw is not None and self.params.turns_in_place:
             x, y, yaw = poses[-1].tolist()
             poses = joined(poses, turn_in_place(x, y, yaw, self.goal.yaw))
-        prepared = self._prepared(None, None)
-        grid = prepared.opened(margin_m, self.start)
-        if not check_path(poses, grid, prepared.body).fits:
+        grid = self._finer.opened(margin_m, self.start)
+        if not check_path(poses, grid, self._finer.body).fits:
             return None
-        if not self._backs_up_into_seen(poses, prepared):
-            return None
-        return self._planner(prepared).planned(self.goal, poses, margin_m)
+        return self._planner(self._finer).planned(self.goal, poses, margin_m)
 
-    def _backs_up_into_seen(self, poses: Poses, prepared: PreparedMap) -> bool:
-        """Return whether the body enters no unseen space in reverse."""
-        unseen = prepared.unseen(self._put_down_at or self.start)
-        reverse = poses[1:][directions(poses) < 0]
-        depth = exact_clearances(
-            make_obstacles(unseen, prepared.spec),
-            make_outline(self._map.footprint),
-            reverse,
-            0.0,
+    def _seen_space(self, margin_m: float) -> BodySpace:
+        """Return where the body covers no unseen space, which it does not back into."""
+        spec = self._closer.spec
+        unseen = self._finer.unseen(self._put_down_at or self.start)
+        return BodySpace(
+            unseen.astype(np.bool_),
+            spec,
+            self._map.footprint,
+            self.start,
+            margin_m=margin_m - 0.5 * spec.resolution,
         )
-        return bool((depth >= -0.5 * prepared.spec.resolution).all())
 
     def _ends(self) -> NDArray[np.int64]:
         """Return the cells (N, 2) at which a path may end."""
@@ -202,14 +210,18 @@ class TightPlanner:
         rim = around[[0, -1]].any() or around[:, [0, -1]].any()
         return reached, Outcome.NO_PATH if is_seen or rim else Outcome.GOAL_BLOCKED
 
-    def _margin(self) -> float:
-        """Return the tight margin, or less in a passage where the robot has less."""
+    @cached_property
+    def _clearance_here_m(self) -> float:
+        """Clearance at the start, at most what a path may need."""
         pose = np.array([[self.start.x, self.start.y, self.start.yaw]])
         outline = make_outline(self._map.footprint)
         obstacles = self._map.grid().exact_obstacles
         most = self._tight_m + _SWAY_M
-        here = float(exact_clearances(obstacles, outline, pose, most)[0])
-        return min(self._tight_m, max(here - _SWAY_M, self._least_m))
+        return float(exact_clearances(obstacles, outline, pose, most)[0])
+
+    def _margin(self) -> float:
+        """Return the tight margin, or less in a passage where the robot has less."""
+        return min(self._tight_m, max(self._clearance_here_m - _SWAY_M, self._least_m))
 
     def _search(
         self,
@@ -222,6 +234,11 @@ class TightPlanner:
         return planner.plan(
             margin_m, self.start, self.goal, max_expansions=max_expansions
         )
+
+    @cached_property
+    def _finer(self) -> PreparedMap:
+        """The map in finer cells, for the body as it is."""
+        return self._prepared(None, None)
 
     def _prepared(
         self, body: BodyShape | None, within: NDArray[np.bool_] | None

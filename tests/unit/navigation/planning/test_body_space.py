@@ -10,10 +10,10 @@ from navette.navigation.grids import (
     make_obstacles,
     make_outline,
 )
-from navette.navigation.planning import drive_flood
+from navette.navigation.planning import pose_flood
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
-from navette.navigation.planning.drive_flood import DriveMoves
+from navette.navigation.planning.drive_path import DriveMoves
 
 BODY = Footprint(((0.5, 0.2), (-0.5, 0.2), (-0.5, -0.2), (0.5, -0.2)))
 START = Pose2(1.0, 2.0, 0.0)
@@ -146,6 +146,73 @@ def test_a_path_of_driven_poses_keeps_the_margin_and_the_drive(
         assert (turns * radius_m <= 1.01 * np.hypot(*steps.T)).all()
 
 
+def test_a_body_moves_in_reverse_only_where_space_was_seen() -> None:
+    """A lane in which the body cannot turn."""
+    spec = GridSpec(0.05, 120, 40)
+    lethal = np.ones(spec.shape, np.bool_)
+    lethal[14:26, 2:118] = False
+    start, goal = Pose2(5.0, 1.0, 0.0), np.array([spec.cell_of(2.0, 1.0)])
+    space = BodySpace(lethal, spec, BODY, start, margin_m=0.0)
+    moves = DriveMoves("ackermann", 0.8)
+    path = space.drive_to(goal, moves).poses
+    assert path is not None
+    assert (np.diff(path[:, 0]) < 0).all()
+    unseen = np.zeros(spec.shape, np.bool_)
+    unseen[:, :60] = True
+    seen = BodySpace(unseen, spec, BODY, start, margin_m=0.0)
+    assert space.drive_to(goal, moves, seen=seen) == (None, True)
+    near = np.array([spec.cell_of(4.2, 1.0)])
+    assert space.drive_to(near, moves, seen=seen).poses is not None
+
+
+@pytest.mark.parametrize("y", [1.0, 1.01, 1.02, 1.035])
+def test_exact_poses_decide_in_a_lane_that_no_cell_proves(y: float) -> None:
+    """3 cm to each side in the middle; within a cell the body may move by 3.5 cm."""
+    spec = GridSpec(0.05, 120, 40)
+    lethal = np.zeros(spec.shape, np.bool_)
+    lethal[14], lethal[26] = True, True  # centres 0.6 m apart
+    obstacles = make_obstacles(lethal.astype(np.uint8), spec)
+    body = Footprint(((0.5, 0.245), (-0.5, 0.245), (-0.5, -0.245), (0.5, -0.245)))
+    start, goal = Pose2(1.0, y + 0.005, 0.0), np.array([spec.cell_of(4.0, 1.02)])
+    margin_m, within_cell_m = 0.02, 0.036
+    loose = BodySpace(lethal, spec, body, start, margin_m=margin_m - within_cell_m)
+    sure = BodySpace(lethal, spec, body, start, margin_m=margin_m + within_cell_m)
+    moves = DriveMoves("differential", 0.0)
+    assert sure.drive_to(goal, moves) == (None, True)
+    outline = make_outline(body)
+    clearance = exact_clearances(obstacles, outline, np.array([start]), 1.0)[0]
+    fit = sure.fit(obstacles, margin_m, margin_m, 0.0)
+    path = loose.drive_to(goal, moves, fit=fit).poses
+    assert (path is not None) == (clearance >= margin_m)
+    if path is not None:
+        kept = exact_clearances(obstacles, outline, path, 1.0)
+        assert kept.min() >= margin_m - 1e-6
+
+
+def test_a_turn_at_the_start_is_checked_too() -> None:
+    """A body that faces a wall 5 cm away turns only after it has backed up."""
+    spec = GridSpec(0.025, 160, 120)
+    lethal = np.zeros(spec.shape, np.bool_)
+    lethal[:, 100] = True
+    obstacles, outline = (
+        make_obstacles(lethal.astype(np.uint8), spec),
+        make_outline(BODY),
+    )
+    start, goal = Pose2(1.9, 1.5, 0.0), np.array([spec.cell_of(0.8, 1.5)])
+    loose = BodySpace(lethal, spec, BODY, start, margin_m=0.02 - 0.018)
+    sure = BodySpace(lethal, spec, BODY, start, margin_m=0.02 + 0.018)
+    fit = sure.fit(obstacles, 0.02, 0.02, outline.radius_m)
+    far = np.zeros(spec.shape, np.bool_)
+    far[:, :52] = True  # unseen space begins 10 cm behind the body
+    seen = BodySpace(far, spec, BODY, start, margin_m=0.0)
+    moves = DriveMoves("differential", 0.0)
+    path = loose.drive_to(goal, moves, seen=seen, fit=fit).poses
+    assert path is not None
+    assert exact_clearances(obstacles, outline, path, 1.0).min() >= 0.02 - 1e-6
+    assert path[:, 0].min() < 0.9
+    assert path[1, 0] < 1.9, "back first"
+
+
 @pytest.mark.parametrize("drive", ["differential", "ackermann"])
 def test_a_small_region_around_the_goal_decides(drive: str) -> None:
     """A hall of 40 m × 40 m, and a closet with a slit beside it."""
@@ -165,7 +232,7 @@ def test_two_large_regions_are_proven_separate_beyond_a_guided_flood(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Two halves of a hall of 0.6 million poses each; within one a path is short."""
-    monkeypatch.setattr(drive_flood, "_ROOM", 100_000)
+    monkeypatch.setattr(pose_flood, "_ROOM", 100_000)
     lethal, spec = np.zeros((200, 200), np.bool_), GridSpec(0.05, 200, 200)
     lethal[100] = True
     space = BodySpace(lethal, spec, BODY, Pose2(5.0, 2.5, 0.3), margin_m=0.0)
@@ -173,7 +240,7 @@ def test_two_large_regions_are_proven_separate_beyond_a_guided_flood(
     moves = DriveMoves("ackermann", 0.8)
     assert space.drive_to(far, moves) == (None, True)
     assert space.drive_to(near, moves).poses is not None
-    monkeypatch.setattr(drive_flood, "_ROOM", 1_000)
+    monkeypatch.setattr(pose_flood, "_ROOM", 1_000)
     assert space.drive_to(far, moves) == (None, False)
 
 

@@ -10,7 +10,7 @@ from planning_worlds import empty_map, fill
 from navette.errors import ParameterError
 from navette.geometry import DRIVES, Pose2
 from navette.navigation.control import ControlParams
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import UNKNOWN, GridSpec
 from navette.navigation.planning import (
     Goal,
     NewMap,
@@ -230,3 +230,29 @@ def test_a_path_through_a_tight_place_is_found_after_the_search_limit(
     if drive == "ackermann":
         arcs = lengths(found.poses) / RADIUS_M
         assert (turned(found.poses) <= 1.02 * arcs + 1e-6).all()
+
+
+@pytest.mark.parametrize("gap_m", [0.08, 0.1])
+def test_a_robot_put_down_facing_a_wall_backs_up_a_little_and_turns(
+    gap_m: float,
+) -> None:
+    """Its lidar covers 270°: behind it only the width of a hand counts as free."""
+    occupancy, spec = empty_map(8, 8)
+    fill(occupancy, spec, (2.0, 2.0 + 2.0), (0.0, 8.0))
+    fill(occupancy, spec, (0.0, 2.0 - gap_m - 0.5 + 0.02), (0.0, 8.0), UNKNOWN)
+    fill(occupancy, spec, (0.0, 2.0), (4.8, 8.0), 0)  # what it sees on its left
+    params = replace(
+        PARAMS["differential"],
+        footprint_m=(0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
+        blind_reverse_m=0.1,
+    )
+    planner = Planner(params)
+    planner.set_map(NewMap(occupancy, spec))
+    start = Pose2(2.0 - gap_m - 0.25, 3.0, 0.0)
+    planner.put_down_at = start
+    found = planner.plan(start, Goal(1.0, 6.5))
+    assert found.outcome.has_path
+    backed = lengths(found.poses)[directions(found.poses) < 0].sum()
+    assert backed <= 0.05
+    grid = planner.map.opened(found.margin_m, start)
+    assert check_path(found.poses, grid, planner.body).fits

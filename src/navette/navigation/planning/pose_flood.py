@@ -1,12 +1,9 @@
-"""A path by the motions of a drive, or the proof that none exists: two floods.
+"""Floods through the poses of a body, from a start and from ends.
 
-Poses are cells and headings, one bit each. Moves are straight, forward and in reverse,
-and to the next heading: in place, or along an arc; an omnidirectional drive also
-slides. Of the poses in a cell and heading the first continues, from its exact position,
-as in hybrid A* (Dolgov et al. 2008). Start and goal, from which moves are undone, are
-flooded in turns (Pohl 1971): the smaller of two separate regions decides. At first each
+Poses are cells and headings, one bit each. Of the poses in a cell and heading the first
+that fits continues, from its exact position, as in hybrid A* (Dolgov et al. 2008). A
 flood continues from its pose nearest to where the other began, along cells that are
-open at any heading: most paths are found long before all poses between are reached.
+open at any heading, or in the order of moves, so that paths have the fewest.
 """
 
 import math
@@ -16,132 +13,80 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import ACKERMANN, OMNI, Pose2
-from navette.navigation.grids import sparse_zeros
+from navette.navigation.grids import (
+    ObstacleGrid,
+    Outline,
+    exact_clearance,
+    sparse_zeros,
+)
 from navette.navigation.planning.bucket_queue import WAITING, BucketQueue, pop, push
 
 HEADINGS = 64
 HEADING_RAD = math.tau / HEADINGS
+MOST_MOVES = 8  # of a drive
 _ROOM = 2_000_000  # poses of a guided flood; of another, those still to be moved
 _MOST_POSES = 40_000_000  # of one flood: two to four seconds
+_MOST_FITTED = 4_000_000  # of one flood: about as long
 _LARGE_BYTES = 1 << 20  # most floods reach few poses of a map
-_AROUND = 4  # cells beside two floods' path in which one exact path is looked for
-_STRAIGHT = 1.5  # cells of a straight motion: it always leaves its cell
-_MOST_MOVES = 8  # of a drive
-_COUNT, _DONE, _LOWEST = 0, 1, 2  # of a flood's state
+_COUNT, _DONE, _LOWEST, _FITTED = 0, 1, 2, 3  # of a flood's state
 
 Masks = NDArray[np.uint64]
 """(H, W) a bit for each heading."""
 
+Steps = tuple[NDArray[np.float64], NDArray[np.int64]]
+"""du, dv in cells (2, headings, moves, 2) and the headings after (2, headings, moves).
 
-class DriveMoves(NamedTuple):
-    """What a drive can do.
+The first half is for a flood from the start, the second, the same moves undone, for one
+from the ends.
+"""
 
-    Attributes:
-        drive: differential, ackermann or omni.
-        radius_m: radius of the tightest arc of an Ackermann drive.
-        reverses: whether it drives in reverse, and sideways.
-    """
-
-    drive: str
-    radius_m: float
-    reverses: bool = True
-
-    def table(self, size_m: float) -> NDArray[np.float64]:
-        """Return moves (N, 3): cells, headings, direction from the heading in rad."""
-        ways = (1, -1) if self.reverses else (1,)
-        if self.drive == ACKERMANN:
-            chord = 2 * self.radius_m * math.sin(math.pi / HEADINGS) / size_m
-            moves = [(way * chord, turn, 0.0) for way in ways for turn in (0, 1, -1)]
-        else:
-            sideways = self.drive == OMNI and self.reverses
-            sides = (0.0, math.pi / 2) if sideways else (0.0,)
-            moves = [(way * _STRAIGHT, 0, side) for side in sides for way in ways]
-            moves += [(0.0, 1, 0.0), (0.0, -1, 0.0)]
-        return np.array(moves, np.float64)
+Toward = tuple[NDArray[np.int32], NDArray[np.int32]]
+"""(H, W) cells to the ends, and to the start; see :func:`away_from`."""
 
 
-class DrivePath(NamedTuple):
-    """Result of :func:`find_drive_path`.
+class Fit(NamedTuple):
+    """Exact clearance of a body, for poses that their cell does not prove to be free.
 
     Attributes:
-        poses: (M, 3) x, y (m), yaw (rad) of a path, or None. Near it, none has fewer
-            moves.
-        is_proof: without poses: whether all motions from one end were tried.
-    """
-
-    poses: NDArray[np.float64] | None
-    is_proof: bool
-
-
-def find_drive_path(
-    open_: Masks,
-    start: Pose2,
-    size_m: float,
-    cells: NDArray[np.int64],
-    headings: NDArray[np.int64],
-    moves: DriveMoves,
-) -> DrivePath:
-    """Return a path through open poses to one of cells (N, 2) at one of headings.
-
-    Args:
-        open_: poses of the body that nothing closes.
-        start: pose in the frame of the grid; heading 0 is its yaw.
+        sure: (H, W) poses that keep the margin wherever in their cell the base is.
+        obstacles: in the map frame.
+        outline: of the body.
+        map_T_grid: (3,) x, y (m), yaw of the grid.
+        start: (3,) x, y (m), yaw of the start in the map.
         size_m: edge of a cell.
-        cells: row, column of the ends.
-        headings: indices of the headings at the ends.
-        moves: those of the drive.
+        margin_m: clearance that the body keeps.
+        near_m: clearance that it keeps near the start.
+        reach_m: how far from the start that is.
     """
-    table = moves.table(size_m)
-    undone = table * (-1.0, -1.0, 1.0)
-    steps = _steps(np.array([table, undone]), start.yaw)
-    begin = np.array([[start.x / size_m, start.y / size_m, 0.0]])
-    bits = np.uint64(1) << headings.astype(np.uint64)
-    nth, which = np.nonzero(open_[tuple(cells.T)][:, None] & bits)
-    ends = np.column_stack([cells[nth, ::-1] + 0.5, headings[which]])
-    first = np.floor(begin[:, 1::-1]).astype(np.int64)
-    toward = _away_from(open_, cells), _away_from(open_, first)
-    met = _flood(open_, begin, ends, steps, toward, both=True)
-    if not met.is_complete:
-        met = _flood(open_, begin, ends, steps, None, both=True)
-    if not met.chains:
-        return DrivePath(None, is_proof=met.is_complete)
-    # Where two floods meet they are off by a part of a cell: one along them is exact,
-    # or one from the start to all poses decides.
-    corridor = np.zeros_like(open_)
-    for chain in met.chains:
-        _copy_around(corridor, open_, chain[:, :2])
-    exact = _flood(corridor, begin, ends, steps, None, both=False)
-    if not exact.chains:
-        exact = _flood(open_, begin, ends, steps, None, both=False)
-    if not exact.chains:
-        return DrivePath(None, is_proof=exact.is_complete)
-    path = _replayed(begin[0], exact.chains[0], steps)
-    yaw = wrapped(start.yaw + path[:, 2] * HEADING_RAD)
-    return DrivePath(np.column_stack([path[:, :2] * size_m, yaw]), is_proof=True)
+
+    sure: Masks
+    obstacles: ObstacleGrid
+    outline: Outline
+    map_T_grid: NDArray[np.float64]
+    start: NDArray[np.float64]
+    size_m: float
+    margin_m: float
+    near_m: float
+    reach_m: float
 
 
-def wrapped(yaw: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-    """Return angles in [−π, π)."""
-    return np.asarray(np.remainder(yaw + math.pi, math.tau) - math.pi)
+class Space(NamedTuple):
+    """Where the body may be.
 
-
-def _steps(
-    table: NDArray[np.float64], yaw: float
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return du, dv in cells (2, headings, moves, 2), and the headings after them.
-
-    The first half of the tables (2, N, 3) is for the flood from the start, the second,
-    the same moves undone, for that from the ends.
+    Attributes:
+        open: (H, W) poses.
+        seen: (H, W) poses between which a blind move is allowed.
+        is_blind: (moves,) whether no sensor looks where a move goes.
+        fit: decides about open poses.
     """
-    length, turn, aside = np.moveaxis(table[:, None], -1, 0)
-    heading = np.arange(HEADINGS)[:, None]
-    along = yaw + (heading + 0.5 * turn) * HEADING_RAD + aside
-    shift = np.stack([length * np.cos(along), length * np.sin(along)], axis=-1)
-    return shift, ((heading + turn) % HEADINGS).astype(np.int64)
+
+    open: Masks
+    seen: Masks
+    is_blind: NDArray[np.bool_]
+    fit: Fit
 
 
-class _Meeting(NamedTuple):
+class Meeting(NamedTuple):
     """Result of floods from a start and from ends.
 
     Attributes:
@@ -164,7 +109,8 @@ class _Flood(NamedTuple):
         poses: (N, 3) u, v in cells, heading of each, as it was reached first; used in
             a circle, unless the flood is guided.
         state: number of poses; of those whose moves were made in order; the bucket
-            before which all are empty.
+            before which all are empty; number of poses whose exact clearance was
+            measured.
         queue: indices of the poses whose moves are to be made, by ``toward``.
         pool: of the queue.
         toward: (H, W) cells to where the other flood began; without cells: the moves
@@ -206,75 +152,51 @@ class _Flood(NamedTuple):
         buckets = 1 << int(toward.max(initial=0) + 1).bit_length()
         queue = BucketQueue.empty(buckets, 0)
         pool = np.empty(_ROOM + 1, np.int64)
-        state = np.array([len(begin), 0, 0])
+        state = np.array([len(begin), 0, 0, 0])
         flood = cls(reached, origin, poses, state, queue, pool, toward, shift, after)
         _queue_first(flood)
         return flood
 
 
-def _flood(
-    open_: Masks,
+def flood(
+    space: Space,
     start: NDArray[np.float64],
     ends: NDArray[np.float64],
-    steps: tuple[NDArray[np.float64], NDArray[np.int64]],
-    toward: tuple[NDArray[np.int32], NDArray[np.int32]] | None,
+    steps: Steps,
+    toward: Toward | None,
     *,
     both: bool,
-) -> _Meeting:
+) -> Meeting:
     """Flood from poses (N, 3) u, v, heading: from both ends in turns, or the start."""
     to_ends, to_start = toward or (None, None)
     shift, after = steps
     floods = (
-        _Flood.of(open_, start, to_ends, shift[0], after[0]),
-        _Flood.of(open_, ends, to_start, shift[1], after[1]),
+        _Flood.of(space.open, start, to_ends, shift[0], after[0]),
+        _Flood.of(space.open, ends, to_start, shift[1], after[1]),
     )
-    row, column, heading, is_complete = _spread(open_, *floods, both)
+    row, column, heading, is_complete = _spread(space, *floods, both)
     if row < 0:
-        return _Meeting((), is_complete)
+        return Meeting((), is_complete)
     last = [row, column, heading]
-    return _Meeting(tuple(_chain(each, last) for each in floods), is_complete=True)
-
-
-def _copy_around(to: Masks, of: Masks, cells: NDArray[np.int64]) -> None:
-    """Copy the cells (N, 2: row, column) and those around them."""
-    height, width = of.shape
-    for i, j in np.ndindex(2 * _AROUND + 1, 2 * _AROUND + 1):
-        rows = (cells[:, 0] + i - _AROUND).clip(0, height - 1)
-        columns = (cells[:, 1] + j - _AROUND).clip(0, width - 1)
-        to[rows, columns] = of[rows, columns]
+    return Meeting(tuple(_chain(each, last) for each in floods), is_complete=True)
 
 
 def _chain(flood: _Flood, last: list[int]) -> NDArray[np.int64]:
     """Return (M, 4) row, column, heading, move from where a flood began to a pose."""
     (row, column, k), rows = last, []
     while code := int(flood.origin[row, column, k]):
-        move = (code - 1) % _MOST_MOVES
+        move = (code - 1) % MOST_MOVES
         rows.append((row, column, k, move))
         k = int(k - flood.after[0, move]) % HEADINGS
         du, dv = flood.shift[k, move].tolist()
-        more = (code - 1) // _MOST_MOVES
+        more = (code - 1) // MOST_MOVES
         row += math.floor(-dv) + more // 4 - 1
         column += math.floor(-du) + more % 4 - 1
     return np.array([(row, column, k, 0), *rows[::-1]], np.int64)
 
 
-def _replayed(
-    start: NDArray[np.float64],
-    chain: NDArray[np.int64],
-    steps: tuple[NDArray[np.float64], NDArray[np.int64]],
-) -> NDArray[np.float64]:
-    """Return the exact poses (M, 3) u, v, heading of a flood's chain from the start."""
-    shift, after = steps[0][0], steps[1][0]
-    poses = np.empty((len(chain), 3), np.float32)
-    poses[0] = start
-    for i, (k, move) in enumerate(zip(chain[:-1, 2], chain[1:, 3], strict=True)):
-        poses[i + 1, :2] = poses[i, :2] + shift[k, move]
-        poses[i + 1, 2] = after[k, move]
-    return poses.astype(np.float64)
-
-
 @kernel
-def _away_from(open_: Masks, cells: NDArray[np.int64]) -> NDArray[np.int32]:
+def away_from(open_: Masks, cells: NDArray[np.int64]) -> NDArray[np.int32]:
     """Return (H, W) the steps to cells (N, 2) through cells open at any heading.
 
     Cells without a path to them get more than any other.
@@ -341,7 +263,7 @@ def _next(flood: Any) -> int:
 
 @kernel(allocates=False)
 def _spread(
-    open_: Masks, start: _Flood, end: _Flood, both: bool
+    space: Space, start: _Flood, end: _Flood, both: bool
 ) -> tuple[int, int, int, bool]:
     """Spread two floods in turns, or the first, until they meet.
 
@@ -358,23 +280,39 @@ def _spread(
         bit = np.uint64(1) << np.uint64(heading)
         if other.reached[int(v), int(u)] & bit:
             return int(v), int(u), int(heading), True
-        if not _make_moves(open_, mine, u, v, int(heading)):
+        if not _make_moves(space, mine, u, v, int(heading)):
             return -1, -1, -1, False
         if both:
             mine, other = other, mine
 
 
+@kernel(allocates=False)
+def _fits(fit: Any, u: Any, v: Any, heading: int) -> bool:
+    """Return whether the body keeps its clearance at an exact pose."""
+    c, s = math.cos(fit.map_T_grid[2]), math.sin(fit.map_T_grid[2])
+    gx, gy = u * fit.size_m, v * fit.size_m
+    x = fit.map_T_grid[0] + c * gx - s * gy
+    y = fit.map_T_grid[1] + s * gx + c * gy
+    away = math.hypot(x - fit.start[0], y - fit.start[1])
+    needed = fit.near_m if away <= fit.reach_m else fit.margin_m
+    yaw = fit.start[2] + heading * HEADING_RAD
+    clearance = exact_clearance(fit.obstacles, fit.outline, x, y, yaw, needed)
+    return bool(clearance >= needed)
+
+
 @kernel(allocates=False, forceinline=True)
-def _make_moves(open_: Masks, flood: Any, u: float, v: float, k: int) -> bool:
+def _make_moves(space: Any, flood: Any, u: float, v: float, k: int) -> bool:
     """Reach poses by each move from one; return whether there was room for all.
 
     A pose is reached from the cell that lies ``floor(-shift)`` away, or the next, as
     within both cells the positions are any. ``origin`` is 1 + the move + the number of
     moves · (4 · rows + columns), these + 1 as rounded positions may add another cell.
     """
+    open_, seen = space.open, space.seen
     height, width = open_.shape
     one, state = np.uint64(1), flood.state
     bit = one << np.uint64(k)
+    is_seen = seen[int(v), int(u)] & bit
     for m in range(flood.after.shape[1]):
         # As it is stored: rounded, a position may lie in the next cell.
         x = np.float32(u + flood.shift[k, m, 0])
@@ -385,16 +323,23 @@ def _make_moves(open_: Masks, flood: Any, u: float, v: float, k: int) -> bool:
         new = one << np.uint64(heading)
         if flood.reached[row, column] & new or not open_[row, column] & new:
             continue
+        sees = is_seen and seen[row, column] & new
         middle = open_[int(0.5 * (v + y)), int(0.5 * (u + x))]
-        if not middle & (bit | new):
+        if not middle & (bit | new) or (space.is_blind[m] and not sees):
             continue
+        if not space.fit.sure[row, column] & new:
+            if state[_FITTED] == _MOST_FITTED:
+                return False
+            state[_FITTED] += 1
+            if not _fits(space.fit, x, y, heading):
+                continue
         count = state[_COUNT]
         if count - state[_DONE] >= flood.poses.shape[0] or count >= _MOST_POSES:
             return False
         at = count % flood.poses.shape[0]
         rows = int(v) - row - math.floor(-flood.shift[k, m, 1]) + 1
         columns = int(u) - column - math.floor(-flood.shift[k, m, 0]) + 1
-        code = 1 + m + _MOST_MOVES * (4 * rows + columns)
+        code = 1 + m + MOST_MOVES * (4 * rows + columns)
         flood.origin[row, column, heading] = code
         flood.reached[row, column] |= new
         flood.poses[at, 0], flood.poses[at, 1] = x, y
