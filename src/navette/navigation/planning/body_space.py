@@ -17,7 +17,6 @@ from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     GridSpec,
     ObstacleGrid,
-    make_obstacles,
     make_outline,
     signed_distance,
 )
@@ -133,20 +132,17 @@ class BodySpace:
         self,
         cells: NDArray[np.int64],
         moves: DriveMoves,
+        seen: "BodySpace",
+        fit: Fit,
         yaw: float | None = None,
         tolerance_rad: float = 0.0,
-        seen: "BodySpace | None" = None,
-        fit: Fit | None = None,
     ) -> DrivePath:
         """Return a path by the moves of a drive from the start to one of cells (N, 2).
 
-        With a yaw (map) the last heading is within the tolerance of it, or the nearest.
-        In reverse and sideways it moves between poses that are open in ``seen`` too.
-        ``fit`` decides about the exact poses; default: all within open cells fit.
+        In reverse and sideways it moves between poses that are open in ``seen`` too;
+        ``fit`` decides about the exact poses. With a yaw (map) the last heading is
+        within the tolerance of it, or the nearest.
         """
-        if fit is None:
-            nothing = make_obstacles(np.zeros((1, 1), np.uint8), self._spec)
-            fit = self.fit(nothing, 0.0, 0.0, 0.0)._replace(sure=self._open)
         frame = self._spec.origin
         local = frame.inverse() @ self._start
         headings = np.arange(HEADINGS)
@@ -155,7 +151,7 @@ class BodySpace:
             headings = headings[off <= max(tolerance_rad, HEADING_RAD / 2 + 1e-9)]
         found = find_drive_path(
             self._open,
-            self._open if seen is None else seen._open,
+            seen._open,
             local,
             self._spec.resolution,
             cells,

@@ -161,7 +161,7 @@ class TightPlanner:
         params, yaw = self.params, self.goal.yaw
         moves = DriveMoves(params.drive, params.min_turning_radius_m)
         return space.drive_to(
-            cells, moves, yaw, params.goal_yaw_tolerance_rad, seen, fit
+            cells, moves, seen, fit, yaw, params.goal_yaw_tolerance_rad
         )
 
     def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:

@@ -13,10 +13,26 @@ from navette.navigation.grids import (
 from navette.navigation.planning import pose_flood
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
-from navette.navigation.planning.drive_path import DriveMoves
+from navette.navigation.planning.drive_path import DriveMoves, DrivePath
+from navette.navigation.planning.pose_flood import Fit
 
 BODY = Footprint(((0.5, 0.2), (-0.5, 0.2), (-0.5, -0.2), (0.5, -0.2)))
 START = Pose2(1.0, 2.0, 0.0)
+
+
+def driven(
+    space: BodySpace,
+    cells: np.ndarray,
+    moves: DriveMoves,
+    seen: BodySpace | None = None,
+    fit: Fit | None = None,
+    **heading: float,
+) -> DrivePath:
+    """Return a path; without more, all space was seen and all open poses fit."""
+    if fit is None:
+        nothing = make_obstacles(np.zeros((1, 1), np.uint8), GridSpec(1.0, 1, 1))
+        fit = space.fit(nothing, 0.0, 0.0, 0.0)._replace(sure=space._open)
+    return space.drive_to(cells, moves, seen or space, fit, **heading)
 
 
 def wall(gap_m: float, grid_yaw: float = 0.0) -> tuple[np.ndarray, GridSpec]:
@@ -115,10 +131,10 @@ def test_only_an_omnidirectional_drive_slides_into_a_bay(
     start = Pose2(1.0, 0.5, 0.0)
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.03)
     moves = DriveMoves(drive, 0.8 if drive == "ackermann" else 0.0)
-    path = space.drive_to(np.array([spec.cell_of(3.6, 1.1)]), moves)
+    path = driven(space, np.array([spec.cell_of(3.6, 1.1)]), moves)
     assert (path.poses is not None) == enters
     assert path.is_proof
-    assert space.drive_to(np.array([spec.cell_of(5.0, 0.5)]), moves).poses is not None
+    assert driven(space, np.array([spec.cell_of(5.0, 0.5)]), moves).poses is not None
 
 
 @pytest.mark.parametrize(
@@ -131,7 +147,7 @@ def test_a_path_of_driven_poses_keeps_the_margin_and_the_drive(
     start = Pose2(0.9, 1.2, 0.4)
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.04)
     goal = np.array([spec.cell_of(3.2, 2.0)])
-    path = space.drive_to(goal, DriveMoves(drive, radius_m)).poses
+    path = driven(space, goal, DriveMoves(drive, radius_m)).poses
     assert path is not None
     assert path[0] == pytest.approx(start, abs=1e-6)
     obstacles = make_obstacles(lethal.astype(np.uint8), spec)
@@ -154,15 +170,15 @@ def test_a_body_moves_in_reverse_only_where_space_was_seen() -> None:
     start, goal = Pose2(5.0, 1.0, 0.0), np.array([spec.cell_of(2.0, 1.0)])
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.0)
     moves = DriveMoves("ackermann", 0.8)
-    path = space.drive_to(goal, moves).poses
+    path = driven(space, goal, moves).poses
     assert path is not None
     assert (np.diff(path[:, 0]) < 0).all()
     unseen = np.zeros(spec.shape, np.bool_)
     unseen[:, :60] = True
     seen = BodySpace(unseen, spec, BODY, start, margin_m=0.0)
-    assert space.drive_to(goal, moves, seen=seen) == (None, True)
+    assert driven(space, goal, moves, seen=seen) == (None, True)
     near = np.array([spec.cell_of(4.2, 1.0)])
-    assert space.drive_to(near, moves, seen=seen).poses is not None
+    assert driven(space, near, moves, seen=seen).poses is not None
 
 
 @pytest.mark.parametrize("y", [1.0, 1.01, 1.02, 1.035])
@@ -178,11 +194,11 @@ def test_exact_poses_decide_in_a_lane_that_no_cell_proves(y: float) -> None:
     loose = BodySpace(lethal, spec, body, start, margin_m=margin_m - within_cell_m)
     sure = BodySpace(lethal, spec, body, start, margin_m=margin_m + within_cell_m)
     moves = DriveMoves("differential", 0.0)
-    assert sure.drive_to(goal, moves) == (None, True)
+    assert driven(sure, goal, moves) == (None, True)
     outline = make_outline(body)
     clearance = exact_clearances(obstacles, outline, np.array([start]), 1.0)[0]
     fit = sure.fit(obstacles, margin_m, margin_m, 0.0)
-    path = loose.drive_to(goal, moves, fit=fit).poses
+    path = driven(loose, goal, moves, fit=fit).poses
     assert (path is not None) == (clearance >= margin_m)
     if path is not None:
         kept = exact_clearances(obstacles, outline, path, 1.0)
@@ -206,7 +222,7 @@ def test_a_turn_at_the_start_is_checked_too() -> None:
     far[:, :52] = True  # unseen space begins 10 cm behind the body
     seen = BodySpace(far, spec, BODY, start, margin_m=0.0)
     moves = DriveMoves("differential", 0.0)
-    path = loose.drive_to(goal, moves, seen=seen, fit=fit).poses
+    path = driven(loose, goal, moves, seen=seen, fit=fit).poses
     assert path is not None
     assert exact_clearances(obstacles, outline, path, 1.0).min() >= 0.02 - 1e-6
     assert path[:, 0].min() < 0.9
@@ -222,9 +238,9 @@ def test_a_small_region_around_the_goal_decides(drive: str) -> None:
     lethal[780, 790:793] = False  # 0.15 m
     start, goal = Pose2(5.0, 5.0, 0.3), np.array([[790, 785]])
     space = BodySpace(lethal, spec, BODY, start, margin_m=0.0)
-    path = space.drive_to(goal, DriveMoves(drive, 0.8))
+    path = driven(space, goal, DriveMoves(drive, 0.8))
     assert path == (None, True)
-    there = space.drive_to(np.array([[700, 700]]), DriveMoves(drive, 0.8))
+    there = driven(space, np.array([[700, 700]]), DriveMoves(drive, 0.8))
     assert there.poses is not None
 
 
@@ -238,10 +254,10 @@ def test_two_large_regions_are_proven_separate_beyond_a_guided_flood(
     space = BodySpace(lethal, spec, BODY, Pose2(5.0, 2.5, 0.3), margin_m=0.0)
     far, near = np.array([[150, 100]]), np.array([[60, 120]])
     moves = DriveMoves("ackermann", 0.8)
-    assert space.drive_to(far, moves) == (None, True)
-    assert space.drive_to(near, moves).poses is not None
+    assert driven(space, far, moves) == (None, True)
+    assert driven(space, near, moves).poses is not None
     monkeypatch.setattr(pose_flood, "_ROOM", 1_000)
-    assert space.drive_to(far, moves) == (None, False)
+    assert driven(space, far, moves) == (None, False)
 
 
 def test_the_last_heading_is_the_one_wanted() -> None:
@@ -250,6 +266,6 @@ def test_the_last_heading_is_the_one_wanted() -> None:
         np.zeros(spec.shape, np.bool_), spec, BODY, Pose2(1.0, 1.0, 0.5), margin_m=0.0
     )
     goal, moves = np.array([spec.cell_of(4.0, 2.0)]), DriveMoves("ackermann", 0.8)
-    path = space.drive_to(goal, moves, yaw=-2.0, tolerance_rad=0.2).poses
+    path = driven(space, goal, moves, yaw=-2.0, tolerance_rad=0.2).poses
     assert path is not None
     assert path[-1] == pytest.approx([4.0, 2.0, -2.0], abs=0.2)
