@@ -1,8 +1,9 @@
 """Plan where no path was found on the map's own cells: finer cells, or a proof.
 
 The steps: cut out the map in cells of 2.5 cm, prove that no path exists, search through
-gaps with a part of the budget, try all motions on a fine grid, and search with all of
-the budget unless these prove that no path exists.
+gaps with a part of the budget, and try all motions on a fine grid. If these reach the
+goal, search beside their path for one of longer motions. If they are too many, search
+with all of the budget.
 """
 
 import math
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2
 from navette.navigation.grids import (
     UNKNOWN,
+    distance_field,
     exact_clearances,
     make_outline,
 )
@@ -45,6 +47,9 @@ _QUICK_SHARE = 4
 # is what the controller keeps: it would refuse a path with less.
 _SWAY_M, _LEAST_M = 0.01, 0.025
 _SLACK_M = 1e-3  # a body at rest is not closer than itself
+# A search beside a path leaves it by as much. Less, and motions do not fit; more, and
+# other gaps attract the search.
+_BESIDE_M = 0.2
 
 
 def quick_expansions(params: PlannerParams) -> int:
@@ -103,12 +108,10 @@ class TightPlanner:
         rough = replace(self._exhaustive(margin), expansions=found.expansions)
         if rough.outcome is Outcome.NO_PATH:  # the search may know more of why
             return rough if found.outcome is Outcome.SEARCH_LIMIT else found
-        # The long search runs only if a path of exact poses at cell centres may exist,
-        # and only there: a gap that the body cannot pass would attract it.
-        reached, why = self._reached(0.0)
-        if why is None:
-            budget = self.params.max_expansions
-            found = self._search(body.loose(slack), margin, budget, reached)
+        budget, within = quick, self._beside(rough.poses)
+        if not rough.outcome.has_path:
+            budget, within = self.params.max_expansions, self._reached(0.0)[0]
+        found = self._search(body.loose(slack), margin, budget, within)
         # A complete search proves nothing but that no motion leaves the start.
         unproven = found.outcome in (Outcome.NO_PATH, Outcome.SEARCH_LIMIT)
         return rough if unproven else found
@@ -120,6 +123,14 @@ class TightPlanner:
         body could move in, and no beam has measured any of it.
         """
         return self._reached(None)[1]
+
+    def _beside(self, poses: Poses) -> NDArray[np.bool_]:
+        """Return the cells (H, W) of the finer map near poses (N, 3)."""
+        spec = self._closer.spec
+        on_path = np.zeros(spec.shape, np.uint8)
+        for x, y, _ in poses.tolist():
+            on_path[spec.cell_of(x, y)] = 1
+        return distance_field(on_path, spec.resolution, 2 * _BESIDE_M) < _BESIDE_M
 
     def _exhaustive(self, margin_m: float) -> Plan:
         """Return a path by all motions on a fine grid, or that there is none.

@@ -345,6 +345,23 @@ def test_a_car_before_a_wall_with_nothing_seen_behind_is_blocked_at_its_start() 
     assert plan.outcome.has_path
 
 
+@pytest.mark.parametrize(("seed", "rough_cost_m"), [(27, 22.6), (34, 21.2), (38, 20.7)])
+def test_between_posts_the_path_of_small_motions_is_replaced_by_a_smoother_one(
+    seed: int, rough_cost_m: float
+) -> None:
+    occupancy, spec = empty_map(6, 4, 0.05)
+    posts = np.random.default_rng(seed).uniform((1, 0), (5, 4), (42, 2))
+    for x, y in posts:
+        fill(occupancy, spec, (x, x + 0.1), (y, y + 0.1))
+    for y in (0.0, 3.9):
+        fill(occupancy, spec, (0, 6), (y, y + 0.1))
+    # The budget is too small for a search that may leave the path.
+    searcher = planner(occupancy, spec, replace(SMALL, max_expansions=400))
+    plan = searcher.plan(Pose2(0.5, 2, 0), Goal(5.5, 2))
+    assert plan.outcome.has_path
+    assert plan.cost < 0.85 * rough_cost_m
+
+
 def test_a_fault_in_the_search_for_a_better_path_is_logged(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
