@@ -15,11 +15,16 @@ from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
 # Tolerance, so that a body at rest is not closer than itself.
 _SLACK_M = 1e-3
+# Between two poses, no point of the body moves farther than this unchecked.
+_STEP_M = 0.025
 
 
 @dataclass(frozen=True)
 class FootprintCheck:
-    """Clearance (N,) in metres at each pose; ``first_bad`` is None if all poses fit."""
+    """Clearance (N,) in metres at each pose, or less on the way to it.
+
+    ``first_bad`` is None if all poses fit.
+    """
 
     clearance_m: NDArray[np.float64]
     first_bad: int | None
@@ -32,7 +37,7 @@ class FootprintCheck:
 def check_path(
     poses: Poses, grid: PlanningGrid, body: BodyShape, margin_m: float | None = None
 ) -> FootprintCheck:
-    """Check every pose (N, 3) of a path against the margin.
+    """Check every pose (N, 3) of a path, and the motion to it, against the margin.
 
     From a start with less clearance than the margin, the path may continue along poses
     with no less clearance than the start; from the first pose with the margin on, the
@@ -40,22 +45,49 @@ def check_path(
     the exact one that control checks its commands with.
     """
     margin = grid.margin_m if margin_m is None else margin_m
-    clearance = clearances(poses, grid, body, enough_m=margin)
-    tight = clearance < margin
+    steps = np.diff(poses, axis=0)
+    steps[:, 2] = np.remainder(steps[:, 2] + np.pi, 2 * np.pi) - np.pi
+    # A point of the body moves no farther than this from pose to pose.
+    motions = np.hypot(steps[:, 0], steps[:, 1])
+    motions += body.circumscribed_m * np.abs(steps[:, 2])
+    enough = margin + 0.5 * motions.max(initial=0.0)
+    clearance = clearances(poses, grid, body, enough_m=enough)
+    tight = clearance < enough
     if tight.any():
-        clearance[tight] = exact_clearances(
-            grid.exact_obstacles,
-            make_outline(body.footprint),
-            poses[tight],
-            margin,
-        )
+        clearance[tight] = _exact(poses[tight], grid, body, enough)
+        lowest = 0.5 * (clearance[:-1] + clearance[1:] - motions)
+        before = np.flatnonzero(lowest < margin)
+        before, between = _between(before, poses, steps, motions)
+        there = _exact(between, grid, body, margin)
+        np.minimum.at(clearance, before + 1, there)
     needed = np.full(len(poses), margin)
     if clearance[0] < margin:
-        enough = clearance >= margin
-        escape = int(np.argmax(enough)) if enough.any() else len(poses)
+        roomy = clearance >= margin
+        escape = int(np.argmax(roomy)) if roomy.any() else len(poses)
         needed[:escape] = clearance[0] - _SLACK_M
     bad = np.flatnonzero(clearance < needed)
     return FootprintCheck(clearance, int(bad[0]) if len(bad) else None)
+
+
+def _between(
+    before: NDArray[np.intp], poses: Poses, steps: Poses, motions: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], Poses]:
+    """Return the poses (M, 3) passed after some of the path, and the indices of these.
+
+    ``steps`` (N − 1, 3) lead from pose to pose, and ``motions`` are their lengths, m.
+    """
+    counts = np.ceil(motions[before] / _STEP_M).astype(np.intp)
+    parts = [np.arange(1, count) / count for count in counts.tolist()]
+    before = np.repeat(before, np.maximum(counts - 1, 0))
+    shares = np.concatenate([*parts, np.empty(0)])
+    return before, poses[before] + shares[:, None] * steps[before]
+
+
+def _exact(
+    poses: Poses, grid: PlanningGrid, body: BodyShape, horizon_m: float
+) -> NDArray[np.float64]:
+    outline = make_outline(body.footprint)
+    return exact_clearances(grid.exact_obstacles, outline, poses, horizon_m)
 
 
 def clearances(

@@ -188,6 +188,23 @@ def test_from_a_start_without_margin_the_clearance_must_not_decrease() -> None:
     assert not check_path(back_in, grid, BODY).fits, "once out, the margin holds"
 
 
+def test_a_path_is_bad_where_the_body_would_hit_a_post_between_two_poses() -> None:
+    occupancy, spec = empty_map(12, 8)
+    fill(occupancy, spec, (6.0, 6.1), (4.0, 4.1))
+    body = BodyShape.of(
+        Footprint.from_flat((0.3, 0.2, -0.3, 0.2, -0.3, -0.2, 0.3, -0.2)), 0.1
+    )
+    grid = planning_grid(occupancy, spec, body, PlannerParams(clearance_margin_m=0.05))
+    past = np.array([[5.0, 4.05, 0.0], [5.5, 4.05, 0.0], [6.6, 4.05, 0.0]])
+    assert check_path(past[[0, 1, 1]], grid, body).fits
+    assert check_path(past, grid, body).first_bad == 2
+    # Turning from side to side of the post, no pose touches it.
+    turned = np.array([[5.7, 4.05, -0.9], [5.7, 4.05, 0.9]])
+    assert check_path(turned[:1], grid, body).fits
+    assert check_path(turned[1:], grid, body).fits
+    assert check_path(turned, grid, body).first_bad == 1
+
+
 def random_params(rng: np.random.Generator) -> PlannerParams:
     return PlannerParams(
         footprint_m=COURSE_FOOTPRINT,

@@ -345,7 +345,7 @@ def test_a_car_before_a_wall_with_nothing_seen_behind_is_blocked_at_its_start() 
     assert plan.outcome.has_path
 
 
-@pytest.mark.parametrize(("seed", "rough_cost_m"), [(27, 22.6), (34, 21.2), (38, 20.7)])
+@pytest.mark.parametrize(("seed", "rough_cost_m"), [(27, 22.6), (34, 21.2)])
 def test_between_posts_the_path_of_small_motions_is_replaced_by_a_smoother_one(
     seed: int, rough_cost_m: float
 ) -> None:
