@@ -28,6 +28,9 @@ from navette.navigation.grids.sub_cells import (
 
 Array = NDArray[np.float64]
 
+_BLOCK = 16  # cells of a row that are skipped at once where none is lethal
+_LEVEL = 1e-9  # sine of an angle that is none
+
 
 class Outline(NamedTuple):
     """A body's outline for kernels: vertices (K, 2) and circumscribed radius, m."""
@@ -178,29 +181,51 @@ def exact_clearance(
     cos = c * frame.cos + s * frame.sin
     sin = s * frame.cos - c * frame.sin
     box = _box(outline.vertices)
+    # Cells along a row for each metre in the directions of the body.
+    along = 1.0 / (size * (cos if abs(cos) > _LEVEL else _LEVEL))
+    across = 1.0 / (size * (sin if abs(sin) > _LEVEL else _LEVEL))
     best = horizon_m
     for row in range(first_row, last_row):
         line = obstacles.lethal[row]
         gy = (row + 0.5 - v) * size
-        for column in range(first, last):
-            if not line[column]:
+        # Columns at which a cell may be nearer to the body than the nearest so far.
+        off = best + HALF_DIAGONAL * size
+        ahead, beside = (box[0] - sin * gy) * along, (cos * gy - box[1]) * across
+        long, wide = (box[2] + off) * abs(along), (box[3] + off) * abs(across)
+        begin = max(first, int(max(ahead - long, beside - wide) + u - 0.5))
+        end = min(last, int(min(ahead + long, beside + wide) + u + 1.5))
+        for block in range(begin, end, _BLOCK):
+            if not _any(line, block):
                 continue
-            gx = (column + 0.5 - u) * size
-            near = outline.radius_m + best + HALF_DIAGONAL * size
-            if near <= 0.0 or gx * gx + gy * gy >= near * near:
-                continue
-            bx, by = cos * gx + sin * gy, cos * gy - sin * gx
-            if _off_box(box, bx, by) - HALF_DIAGONAL * size >= best:
-                continue
-            distance = signed_distance(outline.vertices, bx, by)
-            if distance - HALF_DIAGONAL * size >= best:
-                continue
-            mask = mask_at(obstacles.marks, row, column)
-            if mask == 0:
-                best = min(best, distance - 0.5 * size)
-            else:
-                best = min(best, _of_points(outline, mask, size, bx, by, cos, sin))
+            for column in range(block, min(block + _BLOCK, end)):
+                if not line[column]:
+                    continue
+                gx = (column + 0.5 - u) * size
+                bx, by = cos * gx + sin * gy, cos * gy - sin * gx
+                if _off_box(box, bx, by) - HALF_DIAGONAL * size >= best:
+                    continue
+                distance = signed_distance(outline.vertices, bx, by)
+                if distance - HALF_DIAGONAL * size >= best:
+                    continue
+                mask = mask_at(obstacles.marks, row, column)
+                if mask == 0:
+                    best = min(best, distance - 0.5 * size)
+                else:
+                    best = min(best, _of_points(outline, mask, size, bx, by, cos, sin))
     return best
+
+
+@kernel(allocates=False)
+def _any(line: NDArray[np.uint8], begin: int) -> bool:
+    """Return whether a cell of a block is lethal."""
+    found = np.uint8(0)
+    if begin + _BLOCK <= line.size:
+        for k in range(_BLOCK):  # the constant length is vectorised
+            found |= line[np.uintp(begin + k)]
+    else:
+        for column in range(begin, line.size):
+            found |= line[column]
+    return found != 0
 
 
 @kernel(allocates=False)

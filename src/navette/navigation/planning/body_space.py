@@ -136,12 +136,15 @@ class BodySpace:
         fit: Fit,
         yaw: float | None = None,
         tolerance_rad: float = 0.0,
+        *,
+        thorough: bool = True,
     ) -> DrivePath:
         """Return a path by the moves of a drive from the start to one of cells (N, 2).
 
         In reverse and sideways it moves between poses that are open in ``seen`` too;
         ``fit`` decides about the exact poses. With a yaw (map) the last heading is
-        within the tolerance of it, or the nearest.
+        within the tolerance of it, or the nearest. Unless ``thorough``, long floods
+        are not tried.
         """
         frame = self._spec.origin
         local = frame.inverse() @ self._start
@@ -158,6 +161,7 @@ class BodySpace:
             headings,
             moves,
             fit,
+            thorough=thorough,
         )
         if found.poses is None:
             return found

@@ -54,6 +54,12 @@ class DriveMoves(NamedTuple):
             moves += [(0.0, 1, 0.0), (0.0, -1, 0.0)]
         return np.array(moves, np.float64)
 
+    def motions(self, size_m: float, reach_m: float) -> NDArray[np.float64]:
+        """Return (N,) metres that a point of a body of a radius moves at most."""
+        cells, turn, _ = np.abs(self.table(size_m)).T
+        motions: NDArray[np.float64] = size_m * cells + reach_m * HEADING_RAD * turn
+        return motions
+
 
 class DrivePath(NamedTuple):
     """Result of :func:`find_drive_path`.
@@ -77,6 +83,8 @@ def find_drive_path(
     headings: NDArray[np.int64],
     moves: DriveMoves,
     fit: Fit,
+    *,
+    thorough: bool,
 ) -> DrivePath:
     """Return a path through open poses to one of cells (N, 2) at one of headings.
 
@@ -89,19 +97,21 @@ def find_drive_path(
         headings: indices of the headings at the ends.
         moves: those of the drive.
         fit: decides about the exact poses of the path.
+        thorough: decide, if there is room; otherwise only guided floods are tried.
     """
     table = moves.table(size_m)
     undone = table * (-1.0, -1.0, 1.0)
     steps = _steps(np.array([table, undone]), start.yaw)
     is_blind = (table[:, 0] < 0.0) | (table[:, 2] != 0.0)
-    space = Space(open_, seen, is_blind, fit._replace(sure=open_))
+    motions = moves.motions(size_m, fit.outline.radius_m)
+    space = Space(open_, seen, is_blind, motions, fit._replace(sure=open_))
     begin = np.array([[start.x / size_m, start.y / size_m, 0.0]])
     bits = np.uint64(1) << headings.astype(np.uint64)
     nth, which = np.nonzero(open_[tuple(cells.T)][:, None] & bits)
     ends = np.column_stack([cells[nth, ::-1] + 0.5, headings[which]])
     first = np.floor(begin[:, 1::-1]).astype(np.int64)
     toward = away_from(open_, cells), away_from(open_, first)
-    met = _guided(space, begin, ends, steps, toward, both=True)
+    met = _decided(space, begin, ends, steps, toward, both=True, thorough=thorough)
     if not met.chains:
         return DrivePath(None, is_proof=met.is_complete)
     # Where two floods meet they are off by a part of a cell: one along them is exact,
@@ -109,7 +119,9 @@ def find_drive_path(
     space = space._replace(fit=fit)
     exact = _near(space, begin, ends, steps, met)
     if not exact.chains:
-        met = _guided(space, begin, ends, steps, toward, both=False)
+        if not thorough:
+            return DrivePath(None, is_proof=False)
+        met = _decided(space, begin, ends, steps, toward, both=False, thorough=True)
         if not met.chains:
             return DrivePath(None, is_proof=met.is_complete)
         exact = _near(space, begin, ends, steps, met)
@@ -119,7 +131,7 @@ def find_drive_path(
     return DrivePath(np.column_stack([path[:, :2] * size_m, yaw]), is_proof=True)
 
 
-def _guided(
+def _decided(
     space: Space,
     start: NDArray[np.float64],
     ends: NDArray[np.float64],
@@ -127,10 +139,11 @@ def _guided(
     toward: Toward,
     *,
     both: bool,
+    thorough: bool,
 ) -> Meeting:
     """Flood towards the other end; in the order of moves if that does not decide."""
     met = flood(space, start, ends, steps, toward, both=both)
-    if met.is_complete:
+    if met.is_complete or not thorough:
         return met
     return flood(space, start, ends, steps, None, both=both)
 

@@ -27,6 +27,7 @@ MOST_MOVES = 8  # of a drive
 _ROOM = 2_000_000  # poses of a guided flood; of another, those still to be moved
 _MOST_POSES = 40_000_000  # of one flood: two to four seconds
 _MOST_FITTED = 4_000_000  # of one flood: about as long
+_PART_M = 0.025  # least motion of a point of the body between checks of a move
 _LARGE_BYTES = 1 << 20  # most floods reach few poses of a map
 _COUNT, _DONE, _LOWEST, _FITTED = 0, 1, 2, 3  # of a flood's state
 
@@ -45,10 +46,11 @@ Toward = tuple[NDArray[np.int32], NDArray[np.int32]]
 
 
 class Fit(NamedTuple):
-    """Exact clearance of a body, for poses that their cell does not prove to be free.
+    """Exact clearance of a body, for moves that no cell proves to be free.
 
     Attributes:
-        sure: (H, W) poses that keep the margin wherever in their cell the base is.
+        sure: (H, W) poses that keep the margin wherever in their cell the base is, and
+            during any move to there.
         obstacles: in the map frame.
         outline: of the body.
         map_T_grid: (3,) x, y (m), yaw of the grid.
@@ -77,12 +79,14 @@ class Space(NamedTuple):
         open: (H, W) poses.
         seen: (H, W) poses between which a blind move is allowed.
         is_blind: (moves,) whether no sensor looks where a move goes.
+        motions: (moves,) metres that a point of the body moves at most.
         fit: decides about open poses.
     """
 
     open: Masks
     seen: Masks
     is_blind: NDArray[np.bool_]
+    motions: NDArray[np.float64]
     fit: Fit
 
 
@@ -287,8 +291,8 @@ def _spread(
 
 
 @kernel(allocates=False)
-def _fits(fit: Any, u: Any, v: Any, heading: int) -> bool:
-    """Return whether the body keeps its clearance at an exact pose."""
+def _reserve(fit: Any, u: Any, v: Any, heading: float, horizon_m: float) -> float:
+    """Return the clearance at an exact pose beyond what the body keeps there, m."""
     c, s = math.cos(fit.map_T_grid[2]), math.sin(fit.map_T_grid[2])
     gx, gy = u * fit.size_m, v * fit.size_m
     x = fit.map_T_grid[0] + c * gx - s * gy
@@ -296,8 +300,29 @@ def _fits(fit: Any, u: Any, v: Any, heading: int) -> bool:
     away = math.hypot(x - fit.start[0], y - fit.start[1])
     needed = fit.near_m if away <= fit.reach_m else fit.margin_m
     yaw = fit.start[2] + heading * HEADING_RAD
-    clearance = exact_clearance(fit.obstacles, fit.outline, x, y, yaw, needed)
-    return bool(clearance >= needed)
+    most = needed + horizon_m
+    there = exact_clearance(fit.obstacles, fit.outline, x, y, yaw, most)
+    return float(there - needed)
+
+
+@kernel(allocates=False)
+def _fits_along(space: Any, flood: Any, u: Any, v: Any, k: int, m: int) -> bool:
+    """Return whether the body keeps its clearance during a move from a free pose.
+
+    From the end back, as far as each clearance proves (Mirtich 1996).
+    """
+    turn = (flood.after[k, m] - k + HEADINGS // 2) % HEADINGS - HEADINGS // 2
+    left_m = whole_m = space.motions[m]
+    while left_m > 0.0:
+        flood.state[_FITTED] += 1
+        share = left_m / whole_m
+        x = np.float32(u + share * flood.shift[k, m, 0])
+        y = np.float32(v + share * flood.shift[k, m, 1])
+        reserve_m = _reserve(space.fit, x, y, k + share * turn, left_m)
+        if reserve_m < 0.0:
+            return False
+        left_m -= max(reserve_m, _PART_M)
+    return True
 
 
 @kernel(allocates=False, forceinline=True)
@@ -328,10 +353,9 @@ def _make_moves(space: Any, flood: Any, u: float, v: float, k: int) -> bool:
         if not middle & (bit | new) or (space.is_blind[m] and not sees):
             continue
         if not space.fit.sure[row, column] & new:
-            if state[_FITTED] == _MOST_FITTED:
+            if state[_FITTED] >= _MOST_FITTED:
                 return False
-            state[_FITTED] += 1
-            if not _fits(space.fit, x, y, heading):
+            if not _fits_along(space, flood, u, v, k, m):
                 continue
         count = state[_COUNT]
         if count - state[_DONE] >= flood.poses.shape[0] or count >= _MOST_POSES:

@@ -22,7 +22,7 @@ from navette.navigation.grids import (
 )
 from navette.navigation.planning.body_space import BodySpace
 from navette.navigation.planning.close_look import close_map
-from navette.navigation.planning.drive_path import DriveMoves, DrivePath
+from navette.navigation.planning.drive_path import DriveMoves
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.margin_planner import MarginPlanner, path_end_reach_m
@@ -37,7 +37,6 @@ from navette.navigation.planning.path_shape import (
 )
 from navette.navigation.planning.plan import Plan
 from navette.navigation.planning.planning_grid import BodyShape
-from navette.navigation.planning.pose_flood import Fit
 from navette.navigation.planning.prepared_map import PreparedMap
 from navette.navigation.planning.route import GridRouter
 
@@ -136,53 +135,56 @@ class TightPlanner:
         """Return a path by all motions on a fine grid, or that there is none.
 
         These paths are rough, of shorter motions than the search has. The first keeps
-        the margin wherever in a cell the robot is, the second at its exact poses.
-        ``search_limit``: the motions are too many.
+        the margin wherever in a cell the robot is, the second, if the first is not
+        found soon, at its exact poses. ``search_limit``: the motions are too many.
         """
         within_cell_m = math.sqrt(0.5) * self._closer.spec.resolution
         reach_m = self._map.body.circumscribed_m
         # Where the robot stands it may have less, and keeps that.
         near_m = min(margin_m, self._clearance_here_m - _SLACK_M)
         near = self._space(near_m - within_cell_m)
-        sure = self._space(margin_m + within_cell_m)
         obstacles = self._finer.grid().exact_obstacles
-        fit = sure.fit(obstacles, margin_m, near_m, reach_m)
+        motion_m = self._moves.motions(self._closer.spec.resolution, reach_m).max()
+        proven = self._space(margin_m + within_cell_m + motion_m)
+        fit = proven.fit(obstacles, margin_m, near_m, reach_m)
         seen = self._seen_space(within_cell_m)
         cells, outcome = self._ends(), Outcome.NO_PATH
-        for space in (sure, self._space(margin_m)):
+        for more_m, thorough in ((within_cell_m, False), (0.0, True)):
+            space = self._space(margin_m + more_m)
             space.open_near_start(near, reach_m)
             if not self.params.allow_unknown:
                 space.close(self._closer.occupancy == UNKNOWN)
             if not space.reached_from(np.array([space.start]))[tuple(cells.T)].any():
                 continue
-            path = self._driven(space, cells, seen, fit)
-            if path.poses is None:
-                outcome = outcome if path.is_proof else Outcome.SEARCH_LIMIT
-                continue
-            outcome = Outcome.SEARCH_LIMIT
-            rough = self._rough_plan(path.poses, min(margin_m, self._least_m))
-            if rough is not None:
-                return rough
+            path = space.drive_to(
+                cells,
+                self._moves,
+                seen,
+                fit,
+                self.goal.yaw,
+                self.params.goal_yaw_tolerance_rad,
+                thorough=thorough,
+            )
+            if path.poses is not None:
+                return self._rough_plan(path.poses, margin_m)
+            outcome = Outcome.NO_PATH if path.is_proof else Outcome.SEARCH_LIMIT
         return Plan(outcome)
 
-    def _driven(
-        self, space: BodySpace, cells: NDArray[np.int64], seen: BodySpace, fit: Fit
-    ) -> DrivePath:
-        """Return a path of the drive through a space to one of cells (N, 2)."""
-        params, yaw = self.params, self.goal.yaw
-        moves = DriveMoves(params.drive, params.min_turning_radius_m)
-        return space.drive_to(
-            cells, moves, seen, fit, yaw, params.goal_yaw_tolerance_rad
-        )
+    @property
+    def _moves(self) -> DriveMoves:
+        return DriveMoves(self.params.drive, self.params.min_turning_radius_m)
 
-    def _rough_plan(self, poses: Poses, margin_m: float) -> Plan | None:
-        """Return the plan of poses from all motions, if the body fits along them."""
+    def _rough_plan(self, poses: Poses, margin_m: float) -> Plan:
+        """Return the plan of poses from all motions.
+
+        They end within half a heading of the goal's; if the body fits, it turns there.
+        """
         if self.goal.yaw is not None and self.params.turns_in_place:
             x, y, yaw = poses[-1].tolist()
-            poses = joined(poses, turn_in_place(x, y, yaw, self.goal.yaw))
-        grid = self._finer.opened(margin_m, self.start)
-        if not check_path(poses, grid, self._finer.body).fits:
-            return None
+            turn = turn_in_place(x, y, yaw, self.goal.yaw)
+            grid = self._finer.opened(margin_m, self.start)
+            if check_path(turn, grid, self._finer.body).fits:
+                poses = joined(poses, turn)
         return self._planner(self._finer).planned(self.goal, poses, margin_m)
 
     def _seen_space(self, margin_m: float) -> BodySpace:
