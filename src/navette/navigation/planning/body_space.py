@@ -104,9 +104,10 @@ class BodySpace:
     def fit(
         self, obstacles: ObstacleGrid, margin_m: float, near_m: float, reach_m: float
     ) -> Fit:
-        """Return the check of exact poses, which poses that are open here do not need.
+        """Return the check of exact moves; those to poses that are open here need none.
 
-        Those in the cell of the start need it where obstacles close them.
+        The margin of this space includes the motion within a cell and that of a move.
+        Poses in the cell of the start need the check where obstacles close them.
 
         Args:
             obstacles: in the map frame.

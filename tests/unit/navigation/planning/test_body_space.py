@@ -205,6 +205,37 @@ def test_exact_poses_decide_in_a_lane_that_no_cell_proves(y: float) -> None:
         assert kept.min() >= margin_m - 1e-6
 
 
+@pytest.mark.parametrize("drive", ["differential", "ackermann", "omni"])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_long_body_keeps_its_clearance_between_the_poses_of_its_path(
+    drive: str, seed: int
+) -> None:
+    """Between two headings the front of this body moves by 15 cm."""
+    spec, margin_m, within_cell_m = GridSpec(0.05, 160, 120), 0.03, 0.036
+    body = Footprint(((1.5, 0.3), (-0.4, 0.3), (-0.4, -0.3), (1.5, -0.3)))
+    outline, moves = make_outline(body), DriveMoves(drive, 0.8)
+    lethal = np.zeros(spec.shape, np.bool_)
+    posts = np.random.default_rng(seed).uniform((3.0, 0.5), (6.0, 5.5), (10, 2))
+    for x, y in posts:
+        lethal[spec.cell_of(x, y)] = True
+    obstacles = make_obstacles(lethal.astype(np.uint8), spec)
+    start, goal = Pose2(1.5, 3.0, 0.0), np.array([spec.cell_of(7.0, 3.0)])
+
+    def space(least_m: float) -> BodySpace:
+        return BodySpace(lethal, spec, body, start, margin_m=least_m)
+
+    most_m = moves.motions(spec.resolution, outline.radius_m).max()
+    proven = space(margin_m + within_cell_m + most_m)
+    fit = proven.fit(obstacles, margin_m, margin_m, 0.0)
+    path = driven(space(margin_m), goal, moves, fit=fit).poses
+    assert path is not None
+    steps = np.diff(np.column_stack([path[:, :2], np.unwrap(path[:, 2])]), axis=0)
+    for share in np.linspace(0.0, 1.0, 20):
+        kept = exact_clearances(obstacles, outline, path[:-1] + share * steps, 1.0)
+        # From check to check no point moves farther than 2.5 cm.
+        assert kept.min() >= margin_m - 0.0125
+
+
 def test_a_turn_at_the_start_is_checked_too() -> None:
     """A body that faces a wall 5 cm away turns only after it has backed up."""
     spec = GridSpec(0.025, 160, 120)
