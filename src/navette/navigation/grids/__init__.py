@@ -29,10 +29,12 @@ from navette.navigation.grids.exact_clearance import (
     ObstacleGrid,
     Outline,
     body_distance,
+    bounding_box,
     exact_clearance,
     exact_clearances,
     make_obstacles,
     make_outline,
+    off_box,
     signed_distance,
 )
 from navette.navigation.grids.floor_echoes import LEVEL, Upward, is_floor, upward_of
@@ -153,6 +155,8 @@ __all__ = [
     "exact_clearances",
     "body_distance",
     "signed_distance",
+    "bounding_box",
+    "off_box",
     "cost_table",
     "inflate",
     "beam_directions",

@@ -107,7 +107,7 @@ def signed_distance(outline: Array, x: float, y: float) -> float:
 
 
 @kernel(allocates=False)
-def _box(outline: Array) -> tuple[float, float, float, float]:
+def bounding_box(outline: Array) -> tuple[float, float, float, float]:
     """Return the centre x, y of the box around a polygon (K, 2), and half its size."""
     low_x = high_x = outline[0, 0]
     low_y = high_y = outline[0, 1]
@@ -119,7 +119,7 @@ def _box(outline: Array) -> tuple[float, float, float, float]:
 
 
 @kernel(allocates=False)
-def _off_box(box: tuple[float, float, float, float], x: float, y: float) -> float:
+def off_box(box: tuple[float, float, float, float], x: float, y: float) -> float:
     """Return a distance that is no larger than the one to the polygon in the box."""
     off: float = max(abs(x - box[0]) - box[2], abs(y - box[1]) - box[3])
     return off
@@ -141,7 +141,7 @@ def body_distance(
 ) -> float:
     """Return the least signed distance (m) from the body to the points, ≤ horizon."""
     c, s = math.cos(yaw), math.sin(yaw)
-    box = _box(outline)
+    box = bounding_box(outline)
     best = horizon
     for i in range(points.shape[0]):
         dx, dy = points[i, 0] - x, points[i, 1] - y
@@ -149,7 +149,7 @@ def body_distance(
         if near <= 0.0 or dx * dx + dy * dy >= near * near:
             continue
         px, py = c * dx + s * dy, c * dy - s * dx
-        if _off_box(box, px, py) < best:
+        if off_box(box, px, py) < best:
             best = min(best, signed_distance(outline, px, py))
     return best
 
@@ -180,7 +180,7 @@ def exact_clearance(
     c, s = math.cos(yaw), math.sin(yaw)
     cos = c * frame.cos + s * frame.sin
     sin = s * frame.cos - c * frame.sin
-    box = _box(outline.vertices)
+    box = bounding_box(outline.vertices)
     # Cells along a row for each metre in the directions of the body.
     along = 1.0 / (size * (cos if abs(cos) > _LEVEL else _LEVEL))
     across = 1.0 / (size * (sin if abs(sin) > _LEVEL else _LEVEL))
@@ -202,7 +202,7 @@ def exact_clearance(
                     continue
                 gx = (column + 0.5 - u) * size
                 bx, by = cos * gx + sin * gy, cos * gy - sin * gx
-                if _off_box(box, bx, by) - HALF_DIAGONAL * size >= best:
+                if off_box(box, bx, by) - HALF_DIAGONAL * size >= best:
                     continue
                 distance = signed_distance(outline.vertices, bx, by)
                 if distance - HALF_DIAGONAL * size >= best:
@@ -225,7 +225,7 @@ def _any(line: NDArray[np.uint8], begin: int) -> bool:
     else:
         for column in range(begin, line.size):
             found |= line[column]
-    return found != 0
+    return bool(found)
 
 
 @kernel(allocates=False)

@@ -7,6 +7,7 @@ nothing; a flood fill that does not reach the goal proves that no path exists.
 """
 
 import math
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,9 @@ from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import (
     GridSpec,
     ObstacleGrid,
+    bounding_box,
     make_outline,
+    off_box,
     signed_distance,
 )
 from navette.navigation.planning.drive_path import (
@@ -28,7 +31,8 @@ from navette.navigation.planning.drive_path import (
 )
 from navette.navigation.planning.pose_flood import HEADING_RAD, HEADINGS, Fit, Masks
 
-_WITHIN = 5  # headings tried within one bin, its limits included
+# Headings that stand for a bin, in bins: those in it, its own, and those to the next.
+_BIN, _MIDDLE, _TURN = np.linspace(-0.5, 0.5, 5), np.zeros(1), np.linspace(0.0, 1.0, 5)
 
 
 class BodySpace:
@@ -56,29 +60,50 @@ class BodySpace:
         *,
         margin_m: float | None = None,
     ) -> None:
-        outline = make_outline(footprint)
-        reach = int(np.ceil((outline.radius_m + (margin_m or 0.0)) / spec.resolution))
-        stamp = np.zeros((2 * reach + 1, 2 * reach + 1), np.uint64)
+        self._lethal, self._margin_m = lethal, margin_m
+        self._spec, self._start, self._outline = spec, start, make_outline(footprint)
         if margin_m is None:
-            spread, least = np.pi / HEADINGS, -spec.resolution * np.sqrt(0.5)
+            anywhere_m = -spec.resolution * math.sqrt(0.5)
+            self._open = self._opened(anywhere_m, _BIN, any_heading=False)
         else:
-            spread, least = 0.0, margin_m
+            self._open = self._opened(margin_m, _MIDDLE, any_heading=True)
+        self.start = spec.cell_of(start.x, start.y)
+        self._open_at_start = self._open[self.start]
+        self._open[self.start] = ~np.uint64(0)
+        self._near_start: list[tuple[tuple[slice, slice], BodySpace]] = []
+
+    @cached_property
+    def turns(self) -> Masks:
+        """(H, W) turns in place from each heading to the next that nothing closes."""
+        return self._opened(self._margin_m or 0.0, _TURN, any_heading=True)
+
+    def _opened(
+        self, least_m: float, headings: NDArray[np.float64], *, any_heading: bool
+    ) -> Masks:
+        """Return (H, W) the bins of headings that no lethal cell closes.
+
+        Args:
+            least_m: distance from the body to a cell's centre below which it closes.
+            headings: of the body, in bins from that of each bin.
+            any_heading: a bin is closed if one of them is, or only if all are.
+        """
+        spec, outline = self._spec, self._outline
+        reach = math.ceil((outline.radius_m + max(0.0, least_m)) / spec.resolution)
+        stamp = np.zeros((2 * reach + 1, 2 * reach + 1), np.uint64)
+        grid_yaw = spec.origin.yaw - self._start.yaw
         _fill_stamp(
             stamp,
             outline.vertices,
             spec.resolution,
-            spec.origin.yaw - start.yaw,
-            spread,
-            least,
+            grid_yaw,
+            headings,
+            least_m,
+            any_heading,
         )
         closed = np.zeros((spec.height + 2 * reach, spec.width + 2 * reach), np.uint64)
-        _close(closed, lethal, np.ascontiguousarray(stamp[::-1, ::-1]))
+        _close(closed, self._lethal, np.ascontiguousarray(stamp[::-1, ::-1]))
         inner = slice(reach, -reach or None)
-        self._open = np.ascontiguousarray(~closed[inner, inner])
-        self._spec, self._start, self._outline = spec, start, outline
-        self.start = spec.cell_of(start.x, start.y)
-        self._open_at_start = self._open[self.start]
-        self._open[self.start] = ~np.uint64(0)
+        return np.ascontiguousarray(~closed[inner, inner])
 
     def close(self, cells: NDArray[np.bool_]) -> None:
         """Close cells (H, W) for the base."""
@@ -93,6 +118,7 @@ class BodySpace:
             slice(max(0, column - reach), column + reach + 1),
         )
         self._open[near] |= other._open[near]
+        self._near_start.append((near, other))
 
     def reached_from(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return (H, W) the cells that the body reaches from any of cells (N, 2)."""
@@ -102,7 +128,12 @@ class BodySpace:
         return np.asarray(reached != 0)
 
     def fit(
-        self, obstacles: ObstacleGrid, margin_m: float, near_m: float, reach_m: float
+        self,
+        turns: "BodySpace",
+        obstacles: ObstacleGrid,
+        margin_m: float,
+        near_m: float,
+        reach_m: float,
     ) -> Fit:
         """Return the check of exact moves; those to poses that are open here need none.
 
@@ -110,6 +141,8 @@ class BodySpace:
         Poses in the cell of the start need the check where obstacles close them.
 
         Args:
+            turns: space in which turns in place that are open need no check; its
+                margin includes the motion within a cell.
             obstacles: in the map frame.
             margin_m: clearance that the body keeps.
             near_m: clearance that it keeps near the start.
@@ -119,6 +152,7 @@ class BodySpace:
         sure[self.start] = self._open_at_start
         return Fit(
             sure,
+            turns.turns,
             obstacles,
             self._outline,
             np.array(self._spec.origin),
@@ -153,8 +187,12 @@ class BodySpace:
         if yaw is not None:
             off = np.abs(wrapped(headings * HEADING_RAD + (self._start.yaw - yaw)))
             headings = headings[off <= max(tolerance_rad, HEADING_RAD / 2 + 1e-9)]
+        turns = self.turns.copy()
+        for near, other in self._near_start:
+            turns[near] |= other.turns[near]
         found = find_drive_path(
             self._open,
+            turns,
             seen._open,
             local,
             self._spec.resolution,
@@ -177,27 +215,29 @@ def _fill_stamp(
     vertices: NDArray[np.float64],
     size: float,
     grid_yaw: float,
-    spread: float,
+    headings: NDArray[np.float64],
     least: float,
+    any_heading: bool,
 ) -> None:
     """Set the bits of the headings at which the body covers each offset in cells."""
     edge = stamp.shape[0]
+    box = bounding_box(vertices)
     for k in range(HEADINGS):
         bit = np.uint64(1) << np.uint64(k)
-        for i in range(edge):
-            for j in range(edge):
-                x, y = (j - edge // 2) * size, (i - edge // 2) * size
-                covered = True
-                for part in range(_WITHIN):
-                    share = 2.0 * part / (_WITHIN - 1) - 1.0
-                    yaw = 2 * np.pi * k / HEADINGS - grid_yaw + share * spread
-                    c, s = np.cos(yaw), np.sin(yaw)
-                    away = signed_distance(vertices, c * x + s * y, c * y - s * x)
-                    if away >= least:
-                        covered = False
-                        break
-                if covered:
-                    stamp[i, j] |= bit
+        for part in range(headings.size):
+            yaw = 2 * np.pi * (k + headings[part]) / HEADINGS - grid_yaw
+            c, s = np.cos(yaw), np.sin(yaw)
+            for i in range(edge):
+                for j in range(edge):
+                    if part and (stamp[i, j] & bit != 0) == any_heading:
+                        continue  # decided
+                    x, y = (j - edge // 2) * size, (i - edge // 2) * size
+                    bx, by = c * x + s * y, c * y - s * x
+                    near = off_box(box, bx, by) < least
+                    if near and signed_distance(vertices, bx, by) < least:
+                        stamp[i, j] |= bit
+                    else:
+                        stamp[i, j] &= ~bit
 
 
 @kernel

@@ -60,6 +60,11 @@ class DriveMoves(NamedTuple):
         motions: NDArray[np.float64] = size_m * cells + reach_m * HEADING_RAD * turn
         return motions
 
+    def longest_m(self, size_m: float, reach_m: float) -> float:
+        """Return the largest of the motions that are no turns in place."""
+        drives = self.table(size_m)[:, 0] != 0.0
+        return float(self.motions(size_m, reach_m)[drives].max())
+
 
 class DrivePath(NamedTuple):
     """Result of :func:`find_drive_path`.
@@ -76,6 +81,7 @@ class DrivePath(NamedTuple):
 
 def find_drive_path(
     open_: Masks,
+    turns: Masks,
     seen: Masks,
     start: Pose2,
     size_m: float,
@@ -90,6 +96,7 @@ def find_drive_path(
 
     Args:
         open_: poses of the body that nothing closes.
+        turns: turns in place, each from a heading to the next, that nothing closes.
         seen: poses between which the body may move in reverse and sideways.
         start: pose in the frame of the grid; heading 0 is its yaw.
         size_m: edge of a cell.
@@ -103,8 +110,10 @@ def find_drive_path(
     undone = table * (-1.0, -1.0, 1.0)
     steps = _steps(np.array([table, undone]), start.yaw)
     is_blind = (table[:, 0] < 0.0) | (table[:, 2] != 0.0)
+    is_turn = table[:, 0] == 0.0
     motions = moves.motions(size_m, fit.outline.radius_m)
-    space = Space(open_, seen, is_blind, motions, fit._replace(sure=open_))
+    anywhere = fit._replace(sure=open_, sure_turns=turns)
+    space = Space(open_, turns, seen, is_turn, is_blind, motions, anywhere)
     begin = np.array([[start.x / size_m, start.y / size_m, 0.0]])
     bits = np.uint64(1) << headings.astype(np.uint64)
     nth, which = np.nonzero(open_[tuple(cells.T)][:, None] & bits)

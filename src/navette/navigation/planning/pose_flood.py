@@ -50,7 +50,8 @@ class Fit(NamedTuple):
 
     Attributes:
         sure: (H, W) poses that keep the margin wherever in their cell the base is, and
-            during any move to there.
+            during any move to there that is no turn in place.
+        sure_turns: (H, W) turns in place from a heading to the next that keep it, too.
         obstacles: in the map frame.
         outline: of the body.
         map_T_grid: (3,) x, y (m), yaw of the grid.
@@ -62,6 +63,7 @@ class Fit(NamedTuple):
     """
 
     sure: Masks
+    sure_turns: Masks
     obstacles: ObstacleGrid
     outline: Outline
     map_T_grid: NDArray[np.float64]
@@ -77,14 +79,18 @@ class Space(NamedTuple):
 
     Attributes:
         open: (H, W) poses.
+        turns: (H, W) turns in place from a heading to the next.
         seen: (H, W) poses between which a blind move is allowed.
+        is_turn: (moves,) whether a move is a turn in place.
         is_blind: (moves,) whether no sensor looks where a move goes.
         motions: (moves,) metres that a point of the body moves at most.
         fit: decides about open poses.
     """
 
     open: Masks
+    turns: Masks
     seen: Masks
+    is_turn: NDArray[np.bool_]
     is_blind: NDArray[np.bool_]
     motions: NDArray[np.float64]
     fit: Fit
@@ -109,7 +115,7 @@ class _Flood(NamedTuple):
 
     Attributes:
         reached: (H, W) the poses.
-        origin: (H, W, headings) how each was reached, see :func:`_make_moves`; 0: not.
+        origin: (H, W, headings) how each was reached, see :func:`_add`; 0: not.
         poses: (N, 3) u, v in cells, heading of each, as it was reached first; used in
             a circle, unless the flood is guided.
         state: number of poses; of those whose moves were made in order; the bucket
@@ -326,16 +332,21 @@ def _fits_along(space: Any, flood: Any, u: Any, v: Any, k: int, m: int) -> bool:
 
 
 @kernel(allocates=False, forceinline=True)
-def _make_moves(space: Any, flood: Any, u: float, v: float, k: int) -> bool:
-    """Reach poses by each move from one; return whether there was room for all.
+def _is_sure(
+    space: Any, m: int, row: int, column: int, new: np.uint64, turn: np.uint64
+) -> bool:
+    """Return whether move ``m`` to a pose needs no exact check."""
+    if space.is_turn[m]:
+        return bool(space.fit.sure_turns[row, column] & turn)
+    return bool(space.fit.sure[row, column] & new)
 
-    A pose is reached from the cell that lies ``floor(-shift)`` away, or the next, as
-    within both cells the positions are any. ``origin`` is 1 + the move + the number of
-    moves · (4 · rows + columns), these + 1 as rounded positions may add another cell.
-    """
+
+@kernel(allocates=False, forceinline=True)
+def _make_moves(space: Any, flood: Any, u: float, v: float, k: int) -> bool:
+    """Reach poses by each move from one; return whether there was room for all."""
     open_, seen = space.open, space.seen
     height, width = open_.shape
-    one, state = np.uint64(1), flood.state
+    one = np.uint64(1)
     bit = one << np.uint64(k)
     is_seen = seen[int(v), int(u)] & bit
     for m in range(flood.after.shape[1]):
@@ -348,27 +359,45 @@ def _make_moves(space: Any, flood: Any, u: float, v: float, k: int) -> bool:
         new = one << np.uint64(heading)
         if flood.reached[row, column] & new or not open_[row, column] & new:
             continue
-        sees = is_seen and seen[row, column] & new
         middle = open_[int(0.5 * (v + y)), int(0.5 * (u + x))]
+        sees = is_seen and seen[row, column] & new
         if not middle & (bit | new) or (space.is_blind[m] and not sees):
             continue
-        if not space.fit.sure[row, column] & new:
-            if state[_FITTED] >= _MOST_FITTED:
+        turn = bit if heading == (k + 1) % HEADINGS else new
+        if space.is_turn[m] and not space.turns[row, column] & turn:
+            continue
+        if not _is_sure(space, m, row, column, new, turn):
+            if flood.state[_FITTED] >= _MOST_FITTED:
                 return False
             if not _fits_along(space, flood, u, v, k, m):
                 continue
-        count = state[_COUNT]
-        if count - state[_DONE] >= flood.poses.shape[0] or count >= _MOST_POSES:
+        if not _add(flood, u, v, k, m, x, y):
             return False
-        at = count % flood.poses.shape[0]
-        rows = int(v) - row - math.floor(-flood.shift[k, m, 1]) + 1
-        columns = int(u) - column - math.floor(-flood.shift[k, m, 0]) + 1
-        code = 1 + m + MOST_MOVES * (4 * rows + columns)
-        flood.origin[row, column, heading] = code
-        flood.reached[row, column] |= new
-        flood.poses[at, 0], flood.poses[at, 1] = x, y
-        flood.poses[at, 2] = heading
-        state[_COUNT] = count + 1
-        if flood.toward.size:
-            _queue(flood, at)
+    return True
+
+
+@kernel(allocates=False, forceinline=True)
+def _add(flood: Any, u: float, v: float, k: int, m: int, x: Any, y: Any) -> bool:
+    """Add the pose at x, y that a move from another reaches, if there is room.
+
+    A pose is reached from the cell that lies ``floor(-shift)`` away, or the next, as
+    within both cells the positions are any. ``origin`` is 1 + the move + the number of
+    moves · (4 · rows + columns), these + 1 as rounded positions may add another cell.
+    """
+    state, room = flood.state, flood.poses.shape[0]
+    count = state[_COUNT]
+    if count - state[_DONE] >= room or count >= _MOST_POSES:
+        return False
+    row, column, heading = int(y), int(x), flood.after[k, m]
+    rows = int(v) - row - math.floor(-flood.shift[k, m, 1]) + 1
+    columns = int(u) - column - math.floor(-flood.shift[k, m, 0]) + 1
+    code = 1 + m + MOST_MOVES * (4 * rows + columns)
+    flood.origin[row, column, heading] = code
+    flood.reached[row, column] |= np.uint64(1) << np.uint64(heading)
+    at = count % room
+    flood.poses[at, 0], flood.poses[at, 1] = x, y
+    flood.poses[at, 2] = heading
+    state[_COUNT] = count + 1
+    if flood.toward.size:
+        _queue(flood, at)
     return True

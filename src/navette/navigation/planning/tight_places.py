@@ -144,13 +144,13 @@ class TightPlanner:
         near_m = min(margin_m, self._clearance_here_m - _SLACK_M)
         near = self._space(near_m - within_cell_m)
         obstacles = self._finer.grid().exact_obstacles
-        motion_m = self._moves.motions(self._closer.spec.resolution, reach_m).max()
-        proven = self._space(margin_m + within_cell_m + motion_m)
-        fit = proven.fit(obstacles, margin_m, near_m, reach_m)
+        sure, exact = self._space(margin_m + within_cell_m), self._space(margin_m)
+        driven_m = self._moves.longest_m(self._closer.spec.resolution, reach_m)
+        proven = self._space(margin_m + within_cell_m + driven_m)
+        fit = proven.fit(sure, obstacles, margin_m, near_m, reach_m)
         seen = self._seen_space(within_cell_m)
         cells, outcome = self._ends(), Outcome.NO_PATH
-        for more_m, thorough in ((within_cell_m, False), (0.0, True)):
-            space = self._space(margin_m + more_m)
+        for space, thorough in ((sure, False), (exact, True)):
             space.open_near_start(near, reach_m)
             if not self.params.allow_unknown:
                 space.close(self._closer.occupancy == UNKNOWN)

@@ -31,7 +31,7 @@ def driven(
     """Return a path; without more, all space was seen and all open poses fit."""
     if fit is None:
         nothing = make_obstacles(np.zeros((1, 1), np.uint8), GridSpec(1.0, 1, 1))
-        fit = space.fit(nothing, 0.0, 0.0, 0.0)._replace(sure=space._open)
+        fit = space.fit(space, nothing, 0.0, 0.0, 0.0)._replace(sure=space._open)
     return space.drive_to(cells, moves, seen or space, fit, **heading)
 
 
@@ -197,7 +197,7 @@ def test_exact_poses_decide_in_a_lane_that_no_cell_proves(y: float) -> None:
     assert driven(sure, goal, moves) == (None, True)
     outline = make_outline(body)
     clearance = exact_clearances(obstacles, outline, np.array([start]), 1.0)[0]
-    fit = sure.fit(obstacles, margin_m, margin_m, 0.0)
+    fit = sure.fit(sure, obstacles, margin_m, margin_m, 0.0)
     path = driven(loose, goal, moves, fit=fit).poses
     assert (path is not None) == (clearance >= margin_m)
     if path is not None:
@@ -224,9 +224,10 @@ def test_a_long_body_keeps_its_clearance_between_the_poses_of_its_path(
     def space(least_m: float) -> BodySpace:
         return BodySpace(lethal, spec, body, start, margin_m=least_m)
 
-    most_m = moves.motions(spec.resolution, outline.radius_m).max()
-    proven = space(margin_m + within_cell_m + most_m)
-    fit = proven.fit(obstacles, margin_m, margin_m, 0.0)
+    driven_m = moves.longest_m(spec.resolution, outline.radius_m)
+    proven = space(margin_m + within_cell_m + driven_m)
+    turns = space(margin_m + within_cell_m)
+    fit = proven.fit(turns, obstacles, margin_m, margin_m, 0.0)
     path = driven(space(margin_m), goal, moves, fit=fit).poses
     assert path is not None
     steps = np.diff(np.column_stack([path[:, :2], np.unwrap(path[:, 2])]), axis=0)
@@ -248,7 +249,7 @@ def test_a_turn_at_the_start_is_checked_too() -> None:
     start, goal = Pose2(1.9, 1.5, 0.0), np.array([spec.cell_of(0.8, 1.5)])
     loose = BodySpace(lethal, spec, BODY, start, margin_m=0.02 - 0.018)
     sure = BodySpace(lethal, spec, BODY, start, margin_m=0.02 + 0.018)
-    fit = sure.fit(obstacles, 0.02, 0.02, outline.radius_m)
+    fit = sure.fit(sure, obstacles, 0.02, 0.02, outline.radius_m)
     far = np.zeros(spec.shape, np.bool_)
     far[:, :52] = True  # unseen space begins 10 cm behind the body
     seen = BodySpace(far, spec, BODY, start, margin_m=0.0)
