@@ -61,7 +61,7 @@ class DriveMoves(NamedTuple):
         return motions
 
     def longest_m(self, size_m: float, reach_m: float) -> float:
-        """Return the largest of the motions that are no turns in place."""
+        """Return the largest motion but for turns in place."""
         drives = self.table(size_m)[:, 0] != 0.0
         return float(self.motions(size_m, reach_m)[drives].max())
 

@@ -50,7 +50,7 @@ class Fit(NamedTuple):
 
     Attributes:
         sure: (H, W) poses that keep the margin wherever in their cell the base is, and
-            during any move to there that is no turn in place.
+            during any move to there except a turn in place.
         sure_turns: (H, W) turns in place from a heading to the next that keep it, too.
         obstacles: in the map frame.
         outline: of the body.

@@ -107,10 +107,13 @@ class TightPlanner:
         rough = replace(self._exhaustive(margin), expansions=found.expansions)
         if rough.outcome is Outcome.NO_PATH:  # the search may know more of why
             return rough if found.outcome is Outcome.SEARCH_LIMIT else found
-        budget, within = quick, self._beside(rough.poses)
-        if not rough.outcome.has_path:
+        if rough.outcome.has_path:
+            budget, within = quick, self._beside(rough.poses)
+        else:
             budget, within = self.params.max_expansions, self._reached(0.0)[0]
         found = self._search(body.loose(slack), margin, budget, within)
+        if found.outcome.has_path or rough.outcome.has_path:
+            return found if found.outcome.has_path else rough
         # A complete search proves nothing but that no motion leaves the start.
         unproven = found.outcome in (Outcome.NO_PATH, Outcome.SEARCH_LIMIT)
         return rough if unproven else found
