@@ -40,8 +40,9 @@ from navette.navigation.planning.planning_grid import BodyShape
 from navette.navigation.planning.prepared_map import PreparedMap
 from navette.navigation.planning.route import GridRouter
 
-# Searches on the map's own cells, and through gaps, get this part of the budget.
-_QUICK_SHARE = 4
+# Searches on the map's own cells, and beside a path, get this part of the budget,
+# those through gaps, after which all motions decide soon, this one.
+_QUICK_SHARE, _GAPS_SHARE = 4, 8
 # In a passage the clearance varies by this, and is not planned below the least, which
 # is what the controller keeps: it would refuse a path with less.
 _SWAY_M, _LEAST_M = 0.01, 0.025
@@ -51,9 +52,9 @@ _SLACK_M = 1e-3  # a body at rest is not closer than itself
 _BESIDE_M = 0.2
 
 
-def quick_expansions(params: PlannerParams) -> int:
+def quick_expansions(params: PlannerParams, share: int = _QUICK_SHARE) -> int:
     """Return the budget of a search before the proof that no path exists."""
-    return max(LEAST_EXPANSIONS, params.max_expansions // _QUICK_SHARE)
+    return max(LEAST_EXPANSIONS, params.max_expansions // share)
 
 
 def tight_margin_m(params: PlannerParams, more_m: float = 0.0) -> float:
@@ -101,7 +102,8 @@ class TightPlanner:
         margin = self._margin()
         body = BodyShape.of(self._map.footprint, slack)
         quick = quick_expansions(self.params)
-        found = self._search(body.through_gaps(slack), margin, quick)
+        gaps = quick_expansions(self.params, _GAPS_SHARE)
+        found = self._search(body.through_gaps(slack), margin, gaps)
         if found.outcome.has_path:
             return found
         rough = replace(self._exhaustive(margin), expansions=found.expansions)
