@@ -26,7 +26,7 @@ HEADING_RAD = math.tau / HEADINGS
 MOST_MOVES = 8  # of a drive
 _ROOM = 2_000_000  # poses of a guided flood; of another, those still to be moved
 _MOST_POSES = 40_000_000  # of one flood: two to four seconds
-_MOST_FITTED = 4_000_000  # of one flood: about as long
+_MOST_FITTED = 2_000_000  # exact checks of one flood: up to nine seconds
 _PART_M = 0.025  # least motion of a point of the body between checks of a move
 _LARGE_BYTES = 1 << 20  # most floods reach few poses of a map
 _COUNT, _DONE, _LOWEST, _FITTED = 0, 1, 2, 3  # of a flood's state
@@ -119,8 +119,7 @@ class _Flood(NamedTuple):
         poses: (N, 3) u, v in cells, heading of each, as it was reached first; used in
             a circle, unless the flood is guided.
         state: number of poses; of those whose moves were made in order; the bucket
-            before which all are empty; number of poses whose exact clearance was
-            measured.
+            before which all are empty; number of exact checks.
         queue: indices of the poses whose moves are to be made, by ``toward``.
         pool: of the queue.
         toward: (H, W) cells to where the other flood began; without cells: the moves
