@@ -55,6 +55,7 @@ def check_path(
     tight = clearance < enough
     if tight.any():
         clearance[tight] = _exact(poses[tight], grid, body, enough)
+        # On the way from one pose to the next it is at least this.
         lowest = 0.5 * (clearance[:-1] + clearance[1:] - motions)
         before = np.flatnonzero(lowest < margin)
         before, between = _between(before, poses, steps, motions)
