@@ -172,7 +172,8 @@ def exact_clearance(
     reach = (outline.radius_m + horizon_m) / size + 1.0
     height, width = obstacles.lethal.shape
     # In this form a pose that is not finite overlaps.
-    if not (-reach <= u <= width + reach and -reach <= v <= height + reach):
+    inside = -reach <= u <= width + reach and -reach <= v <= height + reach
+    if not (inside and abs(yaw) < np.inf):
         return -outline.radius_m
     first_row, last_row = max(0, int(v - reach)), min(height, int(v + reach) + 1)
     first, last = max(0, int(u - reach)), min(width, int(u + reach) + 1)

@@ -10,6 +10,7 @@ from navette.navigation.grids import (
     exact_clearances,
     make_outline,
 )
+from navette.navigation.planning.drive_path import wrapped
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
@@ -46,7 +47,7 @@ def check_path(
     """
     margin = grid.margin_m if margin_m is None else margin_m
     steps = np.diff(poses, axis=0)
-    steps[:, 2] = np.remainder(steps[:, 2] + np.pi, 2 * np.pi) - np.pi
+    steps[:, 2] = wrapped(steps[:, 2])
     # A point of the body moves no farther than this from pose to pose.
     motions = np.hypot(steps[:, 0], steps[:, 1])
     motions += body.circumscribed_m * np.abs(steps[:, 2])

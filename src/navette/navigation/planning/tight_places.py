@@ -114,11 +114,11 @@ class TightPlanner:
         else:
             budget, within = self.params.max_expansions, self._reached(0.0)[0]
         found = self._search(body.loose(slack), margin, budget, within)
-        if found.outcome.has_path or rough.outcome.has_path:
-            return found if found.outcome.has_path else rough
+        if found.outcome.has_path:
+            return found
         # A complete search proves nothing but that no motion leaves the start.
         unproven = found.outcome in (Outcome.NO_PATH, Outcome.SEARCH_LIMIT)
-        return rough if unproven else found
+        return rough if rough.outcome.has_path or unproven else found
 
     def why_impossible(self) -> Outcome | None:
         """Return why no motion of the body reaches the goal; None if one may exist.

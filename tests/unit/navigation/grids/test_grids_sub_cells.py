@@ -114,3 +114,13 @@ def test_points_far_outside_do_not_mark_the_cells_of_the_grid(far_m: float) -> N
     far = make_obstacles(lethal, spec, np.array([(2.05, far_m)]))
     expected = exact_clearances(make_obstacles(lethal, spec), outline, poses, 1.0)
     assert exact_clearances(far, outline, poses, 1.0) == expected
+
+
+@pytest.mark.parametrize(
+    "pose", [(1.0, 1.0, np.nan), (1.0, 1.0, np.inf), (np.nan, 1.0, 0.0)]
+)
+def test_a_pose_that_is_not_finite_overlaps(pose: tuple[float, float, float]) -> None:
+    spec = GridSpec(0.05, 40, 40)
+    obstacles = make_obstacles(np.ones(spec.shape, np.uint8), spec)
+    body = make_outline(Footprint(((0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2))))
+    assert exact_clearances(obstacles, body, np.array([pose]), 0.3)[0] < 0.0
