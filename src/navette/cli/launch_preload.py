@@ -11,6 +11,7 @@ import navette.ros2.names.process
 import navette.ros2.names.targets
 import navette.ros2.workspace
 import navette.runtime
+import navette.runtime.parameter_files
 import navette.transports.zenoh.transport  # noqa: F401 - imported for the forks
 from navette.msgs import type_hash
 

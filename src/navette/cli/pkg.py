@@ -109,7 +109,7 @@ def create(options: CreateOptions) -> None:
     The tests pass (pytest), colcon builds the package on ROS 2, and Navette runs it
     from its folder. A name that ends with _msgs creates a package of interfaces.
     """
-    from navette.ros2.workspace import create_package
+    from navette.ros2.workspace.create import create_package
 
     if options.build_type is not None:
         made = [_bare(options, options.build_type)]
@@ -133,7 +133,7 @@ def create(options: CreateOptions) -> None:
 
 def _bare(options: CreateOptions, build_type: str) -> Path:
     """Create the build files only; return the package's folder."""
-    from navette.ros2.workspace import PackageAbout, create_bare_package
+    from navette.ros2.workspace.create import PackageAbout, create_bare_package
 
     if options.msgs:
         raise click.UsageError("--msgs and --build-type exclude each other")

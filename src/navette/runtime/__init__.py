@@ -50,7 +50,6 @@ from navette.runtime.log import Logger
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
-from navette.runtime.parameter_files import read_parameter_file
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
     DurabilityPolicy,
@@ -91,6 +90,7 @@ if TYPE_CHECKING:
     )
     from navette.runtime.parameter_client import AsyncParameterClient
     from navette.runtime.parameter_event_handler import ParameterEventHandler
+    from navette.runtime.parameter_files import read_parameter_file
     from navette.runtime.serialization import deserialize_message, serialize_message
     from navette.runtime.stage.params import declare_params
     from navette.runtime.stage.stage_node import Input, Output, StageNode

@@ -9,7 +9,6 @@ from navette.errors import InvalidValueError
 from navette.runtime.exceptions import RosArgumentsError, UnknownROSArgsError
 from navette.runtime.log_levels import LoggingSeverity, severity_from_string
 from navette.runtime.names import RemapRule
-from navette.runtime.parameter_files import parse_value
 
 ParameterArgument = tuple[str | None, str, object]
 """(node name or None, parameter name, value)."""
@@ -152,6 +151,8 @@ def parse_parameter_argument(text: str) -> ParameterArgument:
         raise InvalidValueError(
             f"parameter {text!r}: the value is missing; an empty text is {left}:=''"
         )
+    from navette.runtime.parameter_files import parse_value
+
     return (node if colon else None, name, parse_value(value))
 
 

@@ -16,6 +16,14 @@ _TF = frozenset(
         "TransformListener",
     }
 )
+_PARAMETERS = frozenset(
+    {
+        "AsyncParameterClient",
+        "ParameterEventHandler",
+        "declare_params",
+        "read_parameter_file",
+    }
+)
 _SERIALIZATION = frozenset({"deserialize_message", "serialize_message"})
 
 
@@ -38,12 +46,21 @@ def find(name: str) -> Any:
         from navette.runtime.stage import stage_node as module
     elif name in _STATUS:
         from navette.runtime.stage import status as module
-    elif name == "declare_params":
+    elif name in _PARAMETERS:
+        module = _parameter_module(name)
+    else:
+        raise AttributeError(f"module 'navette.runtime' has no attribute {name!r}")
+    return getattr(module, name)
+
+
+def _parameter_module(name: str) -> Any:
+    module: Any
+    if name == "declare_params":
         from navette.runtime.stage import params as module
     elif name == "AsyncParameterClient":
         from navette.runtime import parameter_client as module
     elif name == "ParameterEventHandler":
         from navette.runtime import parameter_event_handler as module
     else:
-        raise AttributeError(f"module 'navette.runtime' has no attribute {name!r}")
-    return getattr(module, name)
+        from navette.runtime import parameter_files as module
+    return module

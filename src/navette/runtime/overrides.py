@@ -13,7 +13,6 @@ from typing import Any, NamedTuple, Protocol
 
 from navette.errors import ParameterError, instead_of, similar_names
 from navette.runtime.arguments import ParameterArgument
-from navette.runtime.parameter_files import read_parameter_file
 
 
 class Override(NamedTuple):
@@ -90,6 +89,8 @@ class ParameterOverrides:
         self.sets.append(OverrideSet(pattern, dict(values), origin, by_base_name))
 
     def add_file(self, path: Path | str) -> None:
+        from navette.runtime.parameter_files import read_parameter_file
+
         for pattern, values in read_parameter_file(path):
             self.add(pattern, values, str(path))
 

@@ -12,7 +12,6 @@ from navette.errors import ParameterError
 from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.msgs.rcl_interfaces.msg import ParameterValue
 from navette.runtime.exceptions import InvalidParameterException
-from navette.runtime.parameter_files import parse_value, read_parameter_file
 from navette.runtime.strict_mode import is_strict
 
 T = TypeVar("T")
@@ -213,6 +212,8 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
 
 def get_parameter_value(string_value: str) -> ParameterValue:
     """Return the value of a text, read as YAML; a string if it is not YAML."""
+    from navette.runtime.parameter_files import parse_value
+
     return Parameter("text", value=parse_value(string_value)).get_parameter_value()
 
 
@@ -233,6 +234,8 @@ def parameter_dict_from_yaml_file(
         FileFormatError: the file is not a parameter file.
         ParameterError: a target node is not in the file, or no parameter is selected.
     """
+    from navette.runtime.parameter_files import read_parameter_file
+
     entries = read_parameter_file(parameter_file)
     wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
     missing = set(wanted) - {pattern for pattern, _ in entries}

@@ -1,11 +1,5 @@
-"""Packages of a workspace: search without a build step, and creation."""
+"""Packages of a workspace: search without a build step."""
 
-from navette.ros2.workspace.create import (
-    BUILD_TYPES,
-    PackageAbout,
-    create_bare_package,
-    create_package,
-)
 from navette.ros2.workspace.finding import (
     PackageNotFoundError,
     activate,
@@ -17,14 +11,10 @@ from navette.ros2.workspace.manifest import read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
 __all__ = [
-    "BUILD_TYPES",
     "Origin",
     "Package",
-    "PackageAbout",
     "PackageNotFoundError",
     "activate",
-    "create_bare_package",
-    "create_package",
     "find_package",
     "find_packages",
     "read_manifest",

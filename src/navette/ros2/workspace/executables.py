@@ -1,10 +1,12 @@
-"""Programs of a package, read from its build files without running these."""
+"""Programs of a package, read from its build files without running these.
+
+The parsers of build files are imported on first use: ``navette run FILE.py`` searches
+packages, but reads the programs of none.
+"""
 
 import ast
-import configparser
 import os
 import re
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -109,6 +111,8 @@ def installed_executables(package: str, folder: Path) -> tuple[PackageExecutable
 def _from_pyproject(path: Path) -> Iterator[str]:
     if not path.is_file():
         return
+    import tomllib
+
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
@@ -120,6 +124,8 @@ def _from_pyproject(path: Path) -> Iterator[str]:
 def _from_setup_cfg(path: Path) -> Iterator[str]:
     if not path.is_file():
         return
+    import configparser
+
     parser = configparser.ConfigParser(interpolation=None)
     try:
         parser.read_string(path.read_text(encoding="utf-8"))

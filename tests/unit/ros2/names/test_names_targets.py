@@ -7,7 +7,7 @@ import pytest
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.ros2.names import targets
 from navette.ros2.names.targets import find_sources, read_programs, uncalled_main
-from navette.ros2.workspace import create_package
+from navette.ros2.workspace.create import create_package
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from navette.ros2.packages import ament_index_python as index
 from navette.ros2.packages.ament_index_python.packages import PackageNotFoundError
-from navette.ros2.workspace import create_package
+from navette.ros2.workspace.create import create_package
 
 
 @pytest.fixture

@@ -10,12 +10,11 @@ import yaml
 
 import navette
 from navette.errors import FileFormatError, InvalidNameError
-from navette.ros2.workspace import (
+from navette.ros2.workspace import find_package, read_manifest
+from navette.ros2.workspace.create import (
     PackageAbout,
     create_bare_package,
     create_package,
-    find_package,
-    read_manifest,
 )
 
 SOURCE = Path(navette.__file__).parent.parent
