@@ -52,6 +52,8 @@ class DriveState(NamedTuple):
     """counter-clockwise, rad/s"""
     dt: float
     """time until the next call, s"""
+    side_speed: float = 0.0
+    """to the left, m/s"""
 
 
 class CommandMethod(Protocol):
@@ -148,13 +150,10 @@ class CommandFollower(BaseFollower):
         stopped = self._at_rest(inputs)
         if stopped is not None:
             return stopped
-        last = clamp(
-            self._last or VelocityCommand(inputs.speed, inputs.turn_rate), self._params
-        )
+        last = clamp(self._last or self._measured(inputs), self._params)
         self._advance(inputs.pose)
         if self._ends(inputs):
-            moving = abs(inputs.speed) > _STOPPED_MPS
-            if moving:
+            if self._measured(inputs).planar_speed > _STOPPED_MPS:
                 command = brake(last, self._params, dt)
                 return self._emit(command, ControlState.FOLLOWING)
             self._rest = ControlState.REACHED
@@ -176,11 +175,13 @@ class CommandFollower(BaseFollower):
     def _stopping(self, inputs: FollowerInputs) -> SpeedCap:
         """Return the limits from which the robot can stop at the end of the path."""
         left = max(self._left_m, self._end_m(inputs.pose))
-        limit = approach_speed(left, inputs.speed, self._params)
+        speed = self._measured(inputs).planar_speed
+        limit = approach_speed(left, speed, self._params)
         return SpeedCap(limit, limit)
 
     def _wanted(self, inputs: FollowerInputs, dt: float) -> VelocityCommand:
-        state = DriveState(*inputs.pose, inputs.speed, inputs.turn_rate, dt)
+        motion = inputs.speed, inputs.turn_rate
+        state = DriveState(*inputs.pose, *motion, dt, inputs.side_speed)
         returned = own_call(
             self._name,
             self._method.command,
@@ -205,7 +206,7 @@ class CommandFollower(BaseFollower):
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
-        is_sudden = scale * abs(command.speed) < abs(braked.speed)
+        is_sudden = scale * command.planar_speed < braked.planar_speed
         if scale < 1.0 and is_sudden and self._collision.check(pose, braked).scale == 1:
             command, scale = braked, 1.0
             self._limited_by = LimitedBy.COLLISION_CHECK

@@ -155,13 +155,18 @@ class BaseFollower(Follower):
         self._last = None  # continue from the measured motion
         return output
 
+    def _measured(self, inputs: FollowerInputs) -> VelocityCommand:
+        """Return the measured motion as a command; slip to the side is none."""
+        moves_sideways = self._params.max_side_speed_mps > 0.0
+        side = inputs.side_speed if moves_sideways else 0.0
+        return VelocityCommand(inputs.speed, inputs.turn_rate, side)
+
     def _yield_to_moving(
         self, pose: Pose2, motion: VelocityCommand, scale: float
     ) -> None:
         """Store the share of a motion that moving obstacles leave of ``scale``."""
         margin_m = self._params.moving_clearance_m / 2
-        arc = motion.speed, motion.turn_rate
-        yielding = safe_share(pose, arc, self._discs, self._body_m, margin_m)
+        yielding = safe_share(pose, motion, self._discs, self._body_m, margin_m)
         self._set_scale(min(1.0, scale, yielding))
 
     def _set_scale(self, scale: float) -> None:

@@ -13,6 +13,11 @@ class VelocityCommand(NamedTuple):
     turn_rate: float
     side: float = 0.0
 
+    @property
+    def planar_speed(self) -> float:
+        """Magnitude of the velocity, m/s."""
+        return math.hypot(self.speed, self.side)
+
     def scaled(self, share: float) -> "VelocityCommand":
         """Return a share of the command: the same arc, driven slower."""
         return VelocityCommand(
@@ -24,18 +29,16 @@ STOP = VelocityCommand(0.0, 0.0)
 
 
 class SpeedCap(NamedTuple):
-    """Temporary limits (m/s) of the speed forward and in reverse."""
+    """Temporary limits (m/s) of the speed forward or sideways, and in reverse."""
 
     forward: float
     reverse: float
 
     def applied_to(self, command: VelocityCommand) -> VelocityCommand:
         """Return the command, slowed down on its arc if it exceeds a limit."""
-        limit = self.forward if command.speed > 0 else self.reverse
-        if abs(command.speed) <= limit:
-            return command
-        factor = limit / abs(command.speed)
-        return command.scaled(factor)
+        limit = self.reverse if command.speed < 0 else self.forward
+        planar = command.planar_speed
+        return command if planar <= limit else command.scaled(limit / planar)
 
     @classmethod
     def percentage(cls, percent: float, params: ControlParams) -> "SpeedCap":
@@ -56,7 +59,7 @@ def clamp(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
     """
     command = steerable(command, params)
     v, omega, side = command
-    planar = math.hypot(v, side)
+    planar = command.planar_speed
     rim = abs(v) + abs(side) + abs(omega) * params.wheel_separation_m / 2
     wheel = params.max_wheel_speed_mps
     sideways = params.max_side_speed_mps
@@ -93,7 +96,7 @@ def approach(
 
 def brake(last: VelocityCommand, params: ControlParams, dt: float) -> VelocityCommand:
     """Slow down on the present arc: the turn rate falls in proportion to the speed."""
-    speed = math.hypot(last.speed, last.side)
+    speed = last.planar_speed
     if speed == 0.0:
         step = params.turn_acceleration_radps2 * dt
         left = max(0.0, abs(last.turn_rate) - step)

@@ -19,6 +19,7 @@ from navette.navigation.control.drive_models import (
     SIDE,
     TURN_RATE,
 )
+from navette.navigation.control.limits import VelocityCommand
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.rollouts import move
 from navette.navigation.grids import inside_discs
@@ -131,13 +132,12 @@ def _lower_to_disc(
 
 
 @kernel(
-    signature="float64(float64[::1], float64, float64, float64, float64, float64,"
+    signature="float64(float64[::1], UniTuple(float64, 3), float64, float64, float64,"
     " float64[:, ::1])"
 )
 def _first_contact(
     pose: Array,
-    v: float,
-    omega: float,
+    motion: tuple[float, float, float],
     body: float,
     margin: float,
     span: float,
@@ -145,6 +145,7 @@ def _first_contact(
 ) -> float:
     """Return when (s) a constant motion comes within a margin of a disc; ``span``."""
     x, y, yaw = pose
+    v, omega, side = motion
     steps = int(span / _STEP_S)
     now = np.empty(discs.shape[0])
     for m in range(discs.shape[0]):
@@ -152,8 +153,9 @@ def _first_contact(
     for i in range(1, steps + 1):
         time = i * _STEP_S
         middle = yaw + 0.5 * omega * _STEP_S
-        x += v * _STEP_S * math.cos(middle)
-        y += v * _STEP_S * math.sin(middle)
+        c, s = math.cos(middle), math.sin(middle)
+        x += _STEP_S * (v * c - side * s)
+        y += _STEP_S * (v * s + side * c)
         yaw += omega * _STEP_S
         for m in range(discs.shape[0]):
             dx = discs[m, 0] + time * discs[m, 2] - x
@@ -167,24 +169,23 @@ def _first_contact(
 
 def safe_share(
     pose: Pose2,
-    motion: tuple[float, float],
+    motion: VelocityCommand,
     discs: Array,
     body_m: float,
     margin_m: float,
 ) -> float:
-    """Return the share of a motion (m/s, rad/s) that yields to moving obstacles.
+    """Return the share of a motion that yields to moving obstacles.
 
     The largest share that stays clear for 2.5 s; if none does, the one that stays clear
     longest.
     """
     if not len(discs):
         return 1.0
-    v, omega = motion
     start = np.array(pose, np.float64)
     best_s, best = -1.0, 0.0
     for share in _SHARES:
         free_s = _first_contact(
-            start, share * v, share * omega, body_m, margin_m, _SPAN_S, discs
+            start, (*motion.scaled(share),), body_m, margin_m, _SPAN_S, discs
         )
         if free_s >= _SPAN_S:
             return share

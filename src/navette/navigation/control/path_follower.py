@@ -99,7 +99,7 @@ class PathFollower(BaseFollower):
         stopped = self._at_rest(inputs)
         if stopped is not None:
             return stopped
-        last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
+        last = self._last or self._measured(inputs)
         last = clamp(last, self._params)
         self._parts.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
         decision = self._steer(inputs)

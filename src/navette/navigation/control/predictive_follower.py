@@ -166,9 +166,7 @@ class PredictiveFollower(BaseFollower):
         assert self._path is not None, "a path is being followed"
         self._scale, self._limited_by = 1.0, LimitedBy.NONE
         self._advance(self._path, inputs)
-        last = self._last or VelocityCommand(
-            inputs.speed, inputs.turn_rate, inputs.side_speed
-        )
+        last = self._last or self._measured(inputs)
         if self._arrived(self._path, inputs):
             turning = self._turn_to_end(self._path, inputs, last, dt)
             return turning or self._come_to_rest(last, dt)

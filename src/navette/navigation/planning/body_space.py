@@ -70,7 +70,7 @@ class BodySpace:
         self.start = spec.cell_of(start.x, start.y)
         self._open_at_start = self._open[self.start]
         self._open[self.start] = ~np.uint64(0)
-        self._near_start: list[tuple[tuple[slice, slice], BodySpace]] = []
+        self._near_start: tuple[tuple[slice, slice], BodySpace] | None = None
 
     @cached_property
     def turns(self) -> Masks:
@@ -118,7 +118,7 @@ class BodySpace:
             slice(max(0, column - reach), column + reach + 1),
         )
         self._open[near] |= other._open[near]
-        self._near_start.append((near, other))
+        self._near_start = near, other
 
     def reached_from(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return (H, W) the cells that the body reaches from any of cells (N, 2)."""
@@ -188,7 +188,8 @@ class BodySpace:
             off = np.abs(wrapped(headings * HEADING_RAD + (self._start.yaw - yaw)))
             headings = headings[off <= max(tolerance_rad, HEADING_RAD / 2 + 1e-9)]
         turns = self.turns.copy()
-        for near, other in self._near_start:
+        if self._near_start is not None:
+            near, other = self._near_start
             turns[near] |= other.turns[near]
         found = find_drive_path(
             self._open,

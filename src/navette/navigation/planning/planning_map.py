@@ -37,7 +37,7 @@ class PlanningMap(SharedCells):
     def __init__(self, cells: Cells, spec: GridSpec, *, is_own: bool = False) -> None:
         """Args: cells; their geometry; whether nothing else uses the array."""
         super().__init__(cells, is_own=is_own)
-        self.spec = spec
+        self.spec = self._received_spec = spec
 
     def receive(
         self, cells: Cells, spec: GridSpec, changed: CellWindow | None = None
@@ -51,7 +51,10 @@ class PlanningMap(SharedCells):
                 the maps are compared.
         """
         offset = _offset(self.spec, spec)
-        if offset is None:
+        # What a smaller map leaves out is unknown again.
+        is_smaller = _offset(spec, self._received_spec) is None
+        self._received_spec = spec
+        if offset is None or is_smaller:
             self.replace(cells)
             self.spec = spec
             return None
@@ -95,7 +98,9 @@ class PlanningMap(SharedCells):
 
     def copy(self) -> "PlanningMap":
         """Return a map that changes independently."""
-        return PlanningMap(copied(self.cells), self.spec, is_own=True)
+        other = PlanningMap(copied(self.cells), self.spec, is_own=True)
+        other._received_spec = self._received_spec
+        return other
 
 
 def _sides(at: int, size: int, step: int, most: int) -> tuple[int, int] | None:

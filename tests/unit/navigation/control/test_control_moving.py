@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from navette.geometry import Footprint, Pose2
+from navette.navigation.control.limits import VelocityCommand
 from navette.navigation.control.moving_obstacles import counts_as_static, safe_share
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.predictive_follower import PredictiveFollower
@@ -41,12 +42,18 @@ def _discs(*rows: tuple[float, ...]) -> np.ndarray:
 def test_share_of_a_command_yields_to_what_crosses(
     disc: tuple[float, ...], expected: float
 ) -> None:
-    share = safe_share(HERE, (1.0, 0.0), _discs(disc), BODY_M, MARGIN_M)
-    assert share <= expected if expected < 1.0 else share == 1.0
+    def share(motion: VelocityCommand, pose: Pose2) -> float:
+        return safe_share(pose, motion, _discs(disc), BODY_M, MARGIN_M)
+
+    ahead = share(VelocityCommand(1.0, 0.0), HERE)
+    assert ahead <= expected if expected < 1.0 else ahead == 1.0
+    turned_right = Pose2(HERE.x, HERE.y, HERE.yaw - math.pi / 2)
+    assert share(VelocityCommand(0.0, 0.0, 1.0), turned_right) == ahead
 
 
 def test_nothing_moving_changes_nothing() -> None:
-    assert safe_share(HERE, (1.0, 0.5), NO_DISCS, BODY_M, MARGIN_M) == 1.0
+    motion = VelocityCommand(1.0, 0.5)
+    assert safe_share(HERE, motion, NO_DISCS, BODY_M, MARGIN_M) == 1.0
 
 
 def _drive(discs: np.ndarray, seconds: float = 8.0) -> tuple[float, float]:

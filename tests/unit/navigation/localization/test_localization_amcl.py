@@ -168,14 +168,18 @@ def test_resampling_keeps_shares_and_adapts_the_number() -> None:
     assert kld_limit(11, 0.05, 0.99) == pytest.approx(23.2 / 0.1, rel=0.01)
 
 
-def test_the_heaviest_cluster_is_the_estimate() -> None:
+@pytest.mark.parametrize("share_of_bins", [0.0, 0.5])
+def test_the_heaviest_cluster_is_the_estimate(share_of_bins: float) -> None:
+    """Also where it lies in eight bins, and the other one in one."""
     rng = np.random.default_rng(3)
     many = rng.normal((2.0, 1.0, math.pi), (0.1, 0.1, 0.05), (300, 3))
-    few = rng.normal((8.0, 1.0, 0.0), (0.1, 0.1, 0.05), (100, 3))
+    few = rng.normal((8.25, 1.25, 0.17), (0.05, 0.05, 0.03), (100, 3))
+    many[:, :2] += 0.5 * share_of_bins
     particles = np.concatenate([many, few])
     particles[:, 2] = (particles[:, 2] + math.pi) % (2 * math.pi) - math.pi
     found = heaviest_cluster(particles, np.full(400, 1 / 400))
-    assert (found.pose.x, found.pose.y) == pytest.approx((2.0, 1.0), abs=0.03)
+    place = 2.0 + 0.5 * share_of_bins, 1.0 + 0.5 * share_of_bins
+    assert (found.pose.x, found.pose.y) == pytest.approx(place, abs=0.03)
     assert abs(angle_difference(found.pose.yaw, math.pi)) < 0.02
     assert found.share == pytest.approx(0.75, abs=0.01)
     assert found.stddev_m == pytest.approx(0.1, rel=0.15)

@@ -288,6 +288,36 @@ def test_differential_poses_are_velocities() -> None:
         assert pose_of(estimates.last)[1] == pytest.approx(0.0, abs=0.1)
 
 
+@pytest.mark.parametrize("names", [("x", "y"), ("x", "y", "yaw")])
+def test_changes_are_along_the_axes_of_the_base_also_without_the_heading(
+    names: tuple[str, ...],
+) -> None:
+    with GraphHarness() as graph:
+        inputs = {"pose0": "/pose", "pose0_config": config(*names)}
+        _, estimates = started(graph, **inputs, pose0_differential=True)
+        for step in range(20):
+            graph.publish("/pose", pose(0.1 * step, 5.0, 0.2 * step, math.pi / 2))
+            graph.run_for(0.04)
+        velocity = estimates.last.twist.twist.linear
+        assert (velocity.x, velocity.y) == pytest.approx((2.0, 0.0), abs=0.02)
+
+
+def test_the_heading_turns_the_offset_of_a_frame_also_where_it_is_not_fused() -> None:
+    with GraphHarness() as graph:
+        inputs = {"odom0": "/wheels", "odom0_config": config("x", "y")}
+        _, estimates = started(graph, **inputs)
+        ahead = Transform3((0.3, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+        placed(graph, "tracker", ahead)
+        graph.run_for(0.05)
+        msg = wheels(0.1, 0.0, child="tracker")
+        place = msg.pose.pose
+        place.position.x, place.position.y = 4.7, 5.0
+        place.orientation = Quaternion(z=1.0, w=0.0)
+        graph.publish("/wheels", msg)
+        graph.run_for(0.05)
+        assert pose_of(estimates.last)[:2] == pytest.approx((5.0, 5.0), abs=0.01)
+
+
 def test_unusable_messages_are_logged_without_effect() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **POSE)

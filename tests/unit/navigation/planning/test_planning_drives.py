@@ -256,3 +256,25 @@ def test_a_robot_put_down_facing_a_wall_backs_up_a_little_and_turns(
     assert backed <= 0.05
     grid = planner.map.opened(found.margin_m, start)
     assert check_path(found.poses, grid, planner.body).fits
+
+
+@pytest.mark.parametrize("front_m", [0.06, 0.1])
+def test_a_car_leaves_a_parking_place_shorter_than_any_motion_of_the_search(
+    front_m: float,
+) -> None:
+    occupancy, spec = empty_map(8, 6, 0.05)
+    fill(occupancy, spec, (0.0, 8.0), (0.0, 2.75))
+    fill(occupancy, spec, (0.0, 4.0 - 0.13 - 0.15), (0.0, 3.2))
+    fill(occupancy, spec, (4.0 + 0.45 + front_m, 8.0), (0.0, 3.2))
+    params = replace(
+        PARAMS["ackermann"],
+        footprint_m=(0.45, 0.14, -0.13, 0.14, -0.13, -0.14, 0.45, -0.14),
+    )
+    planner = Planner(params)
+    planner.set_map(NewMap(occupancy, spec))
+    start = Pose2(4.0, 3.0, 0.0)
+    found = planner.plan(start, Goal(6.5, 4.5))
+    assert found.outcome.has_path
+    assert (np.diff(directions(found.poses)) != 0).sum() >= 3
+    grid = planner.map.opened(found.margin_m, start)
+    assert check_path(found.poses, grid, planner.body).fits

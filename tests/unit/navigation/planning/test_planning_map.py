@@ -104,15 +104,22 @@ def test_a_map_that_holds_a_goal_follows_the_received_one_as_it_grows() -> None:
     assert mine.cells[row, column] == 100
 
 
-def test_a_map_within_the_one_before_leaves_its_array_alone() -> None:
-    """It may be that of a message, which other nodes have, too."""
-    cells = np.zeros(SPEC.shape, np.int8)
+def test_a_smaller_map_leaves_nothing_of_the_one_before() -> None:
+    """As after a clear of the map, or another map that is loaded."""
+    cells = np.full(SPEC.shape, 100, np.int8)
     mine = PlanningMap(cells, SPEC)
+    mine.hold(0.0, 60.0, 400.0)
     smaller = GridSpec(0.1, 40, 30, SPEC.origin)
-    lethal = np.full(smaller.shape, 100, np.int8)
-    assert mine.receive(lethal, smaller) == (0, 30, 0, 40)
-    assert not cells.any()
-    assert np.count_nonzero(mine.cells) == lethal.size
+    free = np.zeros(smaller.shape, np.int8)
+    assert mine.receive(free, smaller) is None
+    assert mine.spec == smaller
+    assert not mine.cells.any()
+    assert mine.hold(0.0, 60.0, 400.0)
+    free = free.copy()
+    free[3, 4] = 100
+    row, column = mine.spec.cell_of(*smaller.center_of(3, 4))
+    assert mine.receive(free, smaller) == (row, row + 1, column, column + 1)
+    assert (cells == 100).all(), "the array of the first message"
 
 
 def test_a_goal_beyond_the_largest_size_stays_outside() -> None:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, largest_stddev
-from navette.navigation.localization.amcl.bins import bin_keys
+from navette.navigation.localization.amcl.bins import in_heaviest_bin
 
-_BIN_M, _BIN_RAD = 0.5, math.radians(20.0)
+_BIN_M, _BIN_HEADINGS = 0.5, 18
 _RADIUS_M, _RADIUS_RAD = 0.75, 0.5
 _ROUNDS = 3
 
@@ -70,9 +70,7 @@ def heaviest_cluster(
         particles: (N, 3) x, y, yaw.
         weights: (N,) with sum 1.
     """
-    keys = bin_keys(particles, _BIN_M, _BIN_RAD)
-    _, of_bin = np.unique(keys, return_inverse=True)
-    inside = of_bin == int(np.bincount(of_bin, weights).argmax())
+    inside = in_heaviest_bin(particles, weights, _BIN_M, _BIN_HEADINGS)
     mean = _mean(particles[inside], weights[inside])
     for _ in range(_ROUNDS):
         away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])

@@ -95,11 +95,12 @@ class FilterInput(ABC):
         """Convert a PoseWithCovariance in the frame of the message's header."""
         if not self.selection.pose:
             return
+        child_T_base = self.frames.base_in(child).to_pose2()
         reading = pose_reading(
             stamp_ns,
-            self._pose_of(msg.pose.pose),
+            self._pose_of(msg.pose.pose, child_T_base),
             _planar(msg.pose.covariance),
-            self.frames.base_in(child).to_pose2(),
+            child_T_base,
         )
         _check(reading)
         if self._option("differential"):
@@ -114,9 +115,19 @@ class FilterInput(ABC):
             reading = turned(reading, world_T_frame)
         yield self._measured(reading, X, self.selection.pose, threshold)
 
-    def _pose_of(self, pose: Pose) -> Pose2:
-        """Return the pose; an unused heading is 0, as it may be invalid."""
-        yaw = yaw_of(_quaternion(pose.orientation)) if YAW in self.selection.pose else 0
+    def _pose_of(self, pose: Pose, child_T_base: Pose2) -> Pose2:
+        """Return the pose; its heading is 0 if it is invalid and no value needs it.
+
+        Also a heading that is not fused turns changes into the base's axes, and the
+        offset of the child frame into the world's.
+        """
+        is_needed = (
+            YAW in self.selection.pose
+            or self._option("differential")
+            or (child_T_base.x, child_T_base.y) != (0.0, 0.0)
+        )
+        q = pose.orientation
+        yaw = yaw_of(_quaternion(q)) if is_needed or _is_unit(q) else 0.0
         return Pose2(pose.position.x, pose.position.y, yaw)
 
     def _twist(
@@ -308,8 +319,12 @@ def _planar(covariance: Any) -> Array:
     return planar
 
 
+def _is_unit(q: Any) -> bool:
+    return 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1
+
+
 def _quaternion(q: Any) -> Quaternion:
-    if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
+    if not _is_unit(q):
         values = [q.x, q.y, q.z, q.w]
         raise InvalidInputError(
             "invalid_orientation", f"its orientation {values} is not a unit quaternion"
