@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.ndimage import label
 
 from navette.geometry import Pose2
 from navette.navigation.grids import LETHAL, CellWindow, GridSpec, MapPart, ReceivedMap
@@ -53,3 +54,31 @@ def test_a_zoned_map_has_the_cells_of_the_map_and_of_the_zones(
     forbidden[inside] = mask[row[inside], column[inside]] == LETHAL
     expected = np.where(forbidden.reshape(spec.shape), LETHAL, received.cells)
     np.testing.assert_array_equal(cells, expected)
+
+
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([0.02, 0.05, 0.07, 0.1]),
+    st.booleans(),
+)
+def test_a_line_of_one_cell_of_a_mask_closes_a_coarser_map(
+    seed: int, edge_m: float, is_row: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    spec = GridSpec(0.1, SIDE, SIDE, Pose2(-2.0, -2.0, 0.0))
+    turn = Pose2(*rng.uniform(-0.5, 0.5, 2), rng.uniform(-np.pi, np.pi))
+    length = round(8.0 / edge_m)
+    corner = Pose2(-length * edge_m / 2, -length * edge_m / 2, 0.0)
+    mask = np.zeros((length, length), np.int8)
+    line = length // 2 + int(rng.integers(-5, 5))
+    mask[(line, slice(None)) if is_row else (slice(None), line)] = LETHAL
+    occupancy = np.zeros(spec.shape, np.int8)
+    zones = KeepOutZones(mask, GridSpec(edge_m, length, length, turn @ corner))
+    zones.mark(occupancy, spec, CellWindow.whole(spec.shape))
+    count = label(occupancy != LETHAL)[1]
+    assert count >= 2
+    # A zone grows by less than a cell of the map.
+    rows, columns = np.nonzero(occupancy == LETHAL)
+    centres = spec.centers_of(np.column_stack([rows, columns]))
+    local = (turn @ corner).inverse().apply(centres)[:, 1 if is_row else 0]
+    assert np.abs(local - (line + 0.5) * edge_m).max() <= edge_m / 2 + 0.0708

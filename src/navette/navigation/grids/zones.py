@@ -1,5 +1,6 @@
 """Keep-out zones of a mask on another grid, and a map that contains them."""
 
+import math
 from itertools import product
 from typing import Any
 
@@ -26,7 +27,7 @@ class KeepOutZones:
         self._corners = _corners(cells, spec)
 
     def mark(self, occupancy: Cells, spec: GridSpec, window: CellWindow) -> None:
-        """Make cells of a map (H, W) lethal that lie in a zone and in a window."""
+        """Make cells of a map (H, W) lethal that touch a zone and lie in a window."""
         if not len(self._corners):
             return
         near = CellWindow.around(spec, self._corners, margin=1)
@@ -83,14 +84,20 @@ class ZonedMap:
 def _mark(
     occupancy: Any, frame: GridFrame, mask: Any, edge_m: float, window: CellWindow
 ) -> None:
-    """Mark cells whose centres are in zones; ``frame`` is the grid in the mask's."""
-    height, width = mask.shape
+    """Mark cells that are in zones; ``frame`` is the grid in the mask's.
+
+    A cell is tested at points no further apart than the mask's cells: a line of these
+    closes a coarser grid too.
+    """
+    parts = max(1, math.ceil(frame.resolution / edge_m - 1e-6))
     for row in range(window.first_row, window.last_row):
-        y = (row + 0.5) * frame.resolution
         for column in range(window.first_column, window.last_column):
-            x = (column + 0.5) * frame.resolution
-            u = (frame.x + frame.cos * x - frame.sin * y) / edge_m
-            v = (frame.y + frame.sin * x + frame.cos * y) / edge_m
-            is_inside = 0.0 <= u < width and 0.0 <= v < height
-            if is_inside and mask[int(v), int(u)] >= LETHAL:
-                occupancy[row, column] = LETHAL
+            for part in range(parts * parts):
+                x = (column + (part % parts + 0.5) / parts) * frame.resolution
+                y = (row + (part // parts + 0.5) / parts) * frame.resolution
+                u = (frame.x + frame.cos * x - frame.sin * y) / edge_m
+                v = (frame.y + frame.sin * x + frame.cos * y) / edge_m
+                is_inside = 0.0 <= u < mask.shape[1] and 0.0 <= v < mask.shape[0]
+                if is_inside and mask[int(v), int(u)] >= LETHAL:
+                    occupancy[row, column] = LETHAL
+                    break
