@@ -62,8 +62,9 @@ class _Findings:
         self._add(Severity.WARNING, kind, text)
 
     def _add(self, severity: Severity, kind: str, text: str) -> None:
-        if any(text in known.text for known in self.found):
-            return  # the same problem, found a second time
+        # The same problem may be found a second time, then with the name of a file.
+        if any(f": {known.text}".endswith(f": {text}") for known in self.found):
+            return
         self._more[kind] += 1
         if self._more[kind] <= _MOST:
             self.found.append(Finding(severity, text))

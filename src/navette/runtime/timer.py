@@ -41,6 +41,7 @@ class Timer(Destroyable, Entity):
         "_callback",
         "_clock",
         "_entities",
+        "_is_canceled",
         "_is_virtual",
         "_jump_handle",
         "_last_ns",
@@ -70,6 +71,7 @@ class Timer(Destroyable, Entity):
         self._last_ns = clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
         self.token = -1
+        self._is_canceled = not autostart
         self._jump_handle = clock.create_jump_callback(
             JumpThreshold(
                 min_forward=None,
@@ -104,20 +106,22 @@ class Timer(Destroyable, Entity):
         self._takes_info = takes_arguments(callback, 1)
 
     def is_canceled(self) -> bool:
-        return self.token == -1
+        return self._is_canceled
 
     def is_ready(self) -> bool:
         """Return whether the timer is due."""
-        return self.token != -1 and self._clock.now_ns >= self._next_ns
+        return not self._is_canceled and self._clock.now_ns >= self._next_ns
 
     def cancel(self) -> None:
         """Stop the timer until :meth:`reset`."""
+        self._is_canceled = True
         self.token = -1
 
     def reset(self) -> None:
         """Restart the timer: the next call is one period from now."""
         self._last_ns = self._clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
+        self._is_canceled = False
         self._arm()
 
     def time_since_last_call(self) -> int:
@@ -126,13 +130,13 @@ class Timer(Destroyable, Entity):
 
     def time_until_next_call(self) -> int | None:
         """Return the nanoseconds until the next call (< 0: late); None if cancelled."""
-        if self.token == -1:
+        if self._is_canceled:
             return None
         return self._next_ns - self._clock.now_ns
 
     def destroy(self) -> None:
         """Stop the timer and remove it from its node."""
-        self.token = -1
+        self.cancel()
         self._jump_handle.unregister()
         self._entities.forget(self)
 
@@ -140,7 +144,7 @@ class Timer(Destroyable, Entity):
         return self._entities.full_name, f"timer of {self._period_ns / 1e9:g} s"
 
     def run(self) -> Any:
-        if self.token == -1:  # cancelled while the event was queued
+        if self._is_canceled:  # while the event was queued
             return None
         now = self._clock.now_ns
         if now < self._next_ns:  # reset, or clock set back, while queued
@@ -176,10 +180,12 @@ class Timer(Destroyable, Entity):
 
     def _arm(self) -> None:
         self._clock.schedule(self._next_ns, self)
+        if self._is_canceled:  # meanwhile, by another thread
+            self.token = -1
 
     def _on_jump(self, jump: TimeJump) -> None:
         """Restart the period when the clock is set back or its source changes."""
-        if self.token == -1:
+        if self._is_canceled:
             return
         now = self._clock.now_ns
         changed = jump.clock_change != ClockChange.ROS_TIME_NO_CHANGE

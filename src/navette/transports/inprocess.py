@@ -40,6 +40,7 @@ class InProcessPublisher(PublisherPort):
         self._subscriptions: tuple[InProcessSubscription, ...] = ()
         self._sinks: tuple[Sink, ...] = ()
         self._shared_sinks: tuple[Sink, ...] = ()
+        self._joining = threading.Lock()  # the history is read, or added to
         self._history: deque[Item] | None = None
         if endpoint.qos.is_latched:
             self._history = deque(maxlen=endpoint.qos.queue_length)
@@ -58,16 +59,37 @@ class InProcessPublisher(PublisherPort):
             message, copied = Expiring(message, source_ns + self._lifespan_ns), _copied
         elif message.__class__ is Encoded:
             copied = _copied
-        for sink in self._sinks:
-            sink((copied(message), source_ns, source_ns, sequence))
-        if self._shared_sinks or self._history is not None:
+        sinks, shared_sinks = self._sinks, self._shared_sinks
+        if shared_sinks or self._history is not None:
             # One copy for all readers, unless the caller cannot change its own later.
             shared = message if is_final else copied(message)
             item = (shared, source_ns, source_ns, sequence)
             if self._history is not None:
-                self._history.append(item)
-            for sink in self._shared_sinks:
-                sink(item)
+                sinks, shared_sinks = self._store(item)
+        for sink in sinks:
+            sink((copied(message), source_ns, source_ns, sequence))
+        for sink in shared_sinks:
+            sink(item)
+
+    def _store(self, item: Item) -> tuple[tuple[Sink, ...], tuple[Sink, ...]]:
+        """Add a latched sample; return the sinks of those who joined before."""
+        assert self._history is not None
+        with self._joining:
+            self._history.append(item)
+            return self._sinks, self._shared_sinks
+
+    def link(
+        self,
+        subscriptions: "list[InProcessSubscription]",
+        late: "InProcessSubscription",
+    ) -> None:
+        """Replace the matched subscriptions, to which a late joiner was added.
+
+        It receives each latched sample once, also while one is published.
+        """
+        with self._joining:
+            self.relink(subscriptions)
+            self._replay(late)
 
     def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
         """Replace the matched subscriptions."""
@@ -75,7 +97,7 @@ class InProcessPublisher(PublisherPort):
         self._sinks = tuple(s.sink for s in subscriptions if not s.shared)
         self._shared_sinks = tuple(s.sink for s in subscriptions if s.shared)
 
-    def replay(self, subscription: "InProcessSubscription") -> None:
+    def _replay(self, subscription: "InProcessSubscription") -> None:
         """Deliver the newest latched samples to a late joiner, oldest first."""
         if self._history is None or not subscription.endpoint.qos.is_latched:
             return
@@ -199,8 +221,7 @@ class InProcessTransport(Transport):
             topic.subscriptions.append(subscription)
             for publisher in topic.publishers:
                 if _is_compatible(publisher, subscription):
-                    publisher.relink(topic.matches(publisher))
-                    publisher.replay(subscription)
+                    publisher.link(topic.matches(publisher), subscription)
             self._report_matches(
                 [(publisher, subscription) for publisher in topic.publishers]
             )

@@ -11,7 +11,7 @@ from navette.errors import InvalidValueError
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.geometry_msgs.msg import Point, PointStamped, Pose, PoseStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Path
-from navette.msgs.std_msgs.msg import Float64, Header, String
+from navette.msgs.std_msgs.msg import Float64, Header, Int64, String, UInt64
 
 POINT = topic_of("/point", PointStamped)
 NUMBER = topic_of("/number", Float64)
@@ -180,6 +180,23 @@ def test_stamps_may_differ_within_the_tolerance() -> None:
         numbers(1, 2, 3), numbers(1.04, 1.97, 3.2), tolerance_s=0.05
     ).topics
     assert (found.compared, found.missing, found.extra) == (2, 1, 1)
+
+
+@pytest.mark.parametrize("tolerance_s", [0.0, 0.04, 0.05, 0.2])
+def test_one_missing_message_does_not_shift_the_others(tolerance_s: float) -> None:
+    a = [recorded(NUMBER, 0.05 * i, Float64(data=float(i))) for i in range(40)]
+    (found,) = against(a, a[1:], tolerance_s=tolerance_s).topics
+    assert (found.compared, found.missing, found.extra) == (39, 1, 0)
+    assert found.differing == 0
+
+
+@pytest.mark.parametrize(("kind", "a"), [(Int64, -(2**62)), (UInt64, 2**64 - 5)])
+def test_large_whole_numbers_are_compared_exactly(kind: type, a: int) -> None:
+    topic = topic_of("/whole", kind)
+    found = pair(topic, kind(data=a), kind(data=a + 1))
+    (summary,) = found.fields.values()
+    assert (summary.worst.expected, summary.worst.got) == (str(a), str(a + 1))
+    assert pair(topic, kind(data=a), kind(data=a + 1), "/whole=1").same
 
 
 def test_messages_of_one_stamp_are_matched_in_order() -> None:

@@ -1,9 +1,12 @@
 """Timers and rates under virtual time, with rcl's timing."""
 
+import threading
+from typing import Any
+
 import pytest
 
 from navette.errors import CallbackError, InvalidValueError
-from navette.runtime import ROSInterruptException
+from navette.runtime import ROSClock, ROSInterruptException
 from navette.runtime.testing import GraphHarness
 from navette.runtime.timer import TimerInfo
 
@@ -55,6 +58,26 @@ def test_cancel_from_its_own_callback(graph: GraphHarness) -> None:
     timer = graph.node.create_timer(0.5, once)
     graph.run_for(3.0)
     assert hits == [S // 2]
+
+
+def test_a_cancel_by_another_thread_between_two_calls_holds(
+    graph: GraphHarness, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hits: list[int] = []
+    timer = graph.node.create_timer(0.5, lambda: hits.append(graph.now_ns))
+    schedule = ROSClock.schedule
+
+    def interrupted(clock: ROSClock, time_ns: int, entity: Any) -> None:
+        if entity is timer:
+            other = threading.Thread(target=timer.cancel)
+            other.start()
+            other.join()
+        schedule(clock, time_ns, entity)
+
+    monkeypatch.setattr(ROSClock, "schedule", interrupted)
+    graph.run_for(3.0)
+    assert hits == [S // 2]
+    assert timer.is_canceled()
 
 
 def test_reset_of_a_due_timer_restarts_the_period(graph: GraphHarness) -> None:

@@ -124,6 +124,19 @@ def _side(
     return ((message.stamp_ns, side, message) for message in messages)
 
 
+def _nearest(waiting: deque[BagMessage]) -> BagMessage:
+    """Take the first message of the newest stamp.
+
+    With a time tolerance longer than the period, those before it wait for what is
+    missing.
+    """
+    newest_ns = waiting[-1].stamp_ns
+    at = next(k for k, each in enumerate(waiting) if each.stamp_ns == newest_ns)
+    taken = waiting[at]
+    del waiting[at]
+    return taken
+
+
 class _TopicPairs:
     """Matches the messages of a topic and compares them."""
 
@@ -152,7 +165,7 @@ class _TopicPairs:
         if not partners:
             self._waiting[side].append(message)
             return
-        partner = partners.popleft()
+        partner = _nearest(partners)
         pair = (message, partner) if side == 0 else (partner, message)
         self._compare(*pair)
 

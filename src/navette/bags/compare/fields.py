@@ -111,10 +111,14 @@ def _compare_numbers(
     same = one == other
     if same.all():
         return
-    x, y = one.astype(float), other.astype(float)
-    same |= np.isnan(x) & np.isnan(y)
+    are_whole = one.dtype.kind in "iu" and other.dtype.kind in "iu"
+    # As floats, whole numbers above 2⁵³ that differ are equal.
+    number = object if are_whole and one.dtype.itemsize == 8 else float
+    x, y = one.astype(number), other.astype(number)
+    same |= (x != x) & (y != y)  # NaN
     with np.errstate(invalid="ignore"):
-        apart = np.abs(y - x)
+        apart = np.abs(y - x).astype(float)
+    shown = "d" if are_whole else ".9g"
     # Infinite numbers and NaN have no distance: they are equal or different.
     beyond = ~same & ~(apart <= tolerance.absolute)
     count = int(beyond.sum())
@@ -128,8 +132,8 @@ def _compare_numbers(
             count,
             len(one),
             largest if math.isfinite(largest) else None,
-            f"{one[worst]:.9g}",
-            f"{other[worst]:.9g}",
+            f"{one[worst]:{shown}}",
+            f"{other[worst]:{shown}}",
         )
     )
 
