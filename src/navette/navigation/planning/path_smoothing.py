@@ -28,6 +28,7 @@ def smooth_path(
     """
     if len(poses) < 2:
         return poses
+    last_yaw = float(poses[-1, 2])
     poses = _with_headings(poses)
     travel = directions(poses)
     cuts = np.flatnonzero(np.diff(travel)) + 1
@@ -47,7 +48,7 @@ def smooth_path(
         pieces.append(smoothed)
     whole = joined(*pieces)
     x, y, yaw = whole[-1].tolist()
-    return joined(whole, turn_in_place(x, y, yaw, float(poses[-1, 2])))
+    return joined(whole, turn_in_place(x, y, yaw, last_yaw))
 
 
 def _with_headings(poses: Poses) -> Poses:

@@ -1,8 +1,11 @@
 """Clouds are found by their stamp, in every pass of a recording that repeats."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from navette.errors import InvalidValueError
 from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
 from navette.navigation.grids import HitPoints
 from navette.navigation.grids.hit_points import points_from_message, points_to_message
@@ -38,3 +41,36 @@ def test_finite_points_are_read_at_any_offset(x: int, y: int, step: int) -> None
     )  # fmt: skip
     points = points_from_message(cloud)
     np.testing.assert_array_equal(points, expected[[0, 3]])
+
+
+@pytest.mark.parametrize("far", [0.0, 4e3, 5.4e6, -5.4e6])
+def test_points_are_exact_wherever_the_map_lies(far: float) -> None:
+    points = np.array([(far + 0.013, 0.5), (far - 7.031, 0.25)])
+    received = points_from_message(points_to_message(points, "map", 0))
+    np.testing.assert_allclose(received, points, rtol=0, atol=3e-4)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"fields": []},
+        {"fields": [PointField(name="x", datatype=PointField.INT32)]},
+        {"fields": [PointField(name="x", datatype=PointField.FLOAT32)]},
+        {"point_step": 4},
+        {"point_step": 2**32 - 1},
+        {"width": 3},
+        {"is_bigendian": True},
+    ],
+)
+def test_an_invalid_cloud_is_refused(change: dict[str, Any]) -> None:
+    cloud = points_to_message(np.array([(1.0, 2.0)]), "map", 0)
+    for name, value in change.items():
+        setattr(cloud, name, value)
+    with pytest.raises(InvalidValueError, match="expected x and y"):
+        points_from_message(cloud)
+
+
+def test_a_cloud_of_no_points_may_have_any_step() -> None:
+    cloud = points_to_message(np.empty((0, 2)), "map", 0)
+    cloud.point_step = 2**32 - 1
+    assert points_from_message(cloud).shape == (0, 2)

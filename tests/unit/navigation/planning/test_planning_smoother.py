@@ -52,6 +52,20 @@ def test_corners_are_rounded_and_the_ends_stay(graph: GraphHarness) -> None:
     assert np.hypot(*np.diff(poses[:, :2], axis=0).T).max() <= 0.1 + 1e-9
 
 
+@pytest.mark.parametrize("yaw", [math.pi, 0.0])
+def test_a_path_with_only_a_goal_heading_keeps_that(
+    graph: GraphHarness, yaw: float
+) -> None:
+    World(graph).ready()
+    poses = ZIGZAG.copy()
+    poses[:, 2] = 0.0
+    poses[:, :2] = poses[:, 1::-1]  # the last stretch leads up
+    poses[-1, 2] = yaw
+    found = poses_of(smoothed(graph, poses).result.path)
+    assert abs(angle_difference(found[-1, 2], yaw)) < 1e-6
+    assert abs(angle_difference(found[0, 2], math.pi / 2)) < 0.1
+
+
 def test_reverse_pieces_turns_and_the_goal_heading_are_kept(
     graph: GraphHarness,
 ) -> None:
