@@ -18,6 +18,9 @@ _MOST = 400
 # Motion of a costmap below which the map is kept.
 _MOVED_M, _MOVED_RAD = 0.04, 0.015
 
+# Poses of the odometry between those of the trajectory, before these are dropped.
+_MOST_BETWEEN = 1000
+
 Trajectory = Sequence[tuple[int, Pose2]]
 """Stamps (ns), ascending, with map_T_base."""
 
@@ -65,14 +68,28 @@ class Keyframes:
             away = pose.distance_to(costmap.map_T_base)
             moved |= away > _MOVED_M or turned > _MOVED_RAD
             corrected.append((replaced(costmap, pose), odom_T_base))
+        self._thin_trace(stamps)
         if not moved:
             return []
         self._kept = corrected
         return [costmap for costmap, _ in corrected]
 
+    def _thin_trace(self, stamps: list[int]) -> None:
+        """Keep the poses around the stamps of a trajectory, and the newest ones.
+
+        A trajectory keeps its stamps; between two, no pose is asked for again.
+        """
+        if len(self._trace) < _MOST_BETWEEN + 2 * len(stamps):
+            return
+        after = [bisect_right(self._trace, each, key=_stamp_of) for each in stamps]
+        needed = {at for k in after for at in (k - 1, k)}
+        newest = range(after[-1], len(self._trace))
+        chosen = sorted(needed.union(newest) & {*range(len(self._trace))})
+        self._trace = [self._trace[at] for at in chosen]
+
     def _odometry_at(self, stamp_ns: int) -> Pose2:
         """Return odom_T_base at a stamp, interpolated."""
-        index = bisect_right(self._trace, stamp_ns, key=lambda each: each[0])
+        index = bisect_right(self._trace, stamp_ns, key=_stamp_of)
         if index == 0:
             return self._trace[0][1]
         before_ns, before = self._trace[index - 1]
@@ -81,6 +98,10 @@ class Keyframes:
         after_ns, after = self._trace[index]
         share = (stamp_ns - before_ns) / (after_ns - before_ns)
         return before.interpolate(after, share)
+
+
+def _stamp_of(traced: tuple[int, Pose2]) -> int:
+    return traced[0]
 
 
 def replaced(costmap: PlacedCostmap, map_T_base: Pose2) -> PlacedCostmap:

@@ -69,3 +69,24 @@ def test_a_costmap_moves_with_its_pose() -> None:
     moved = replaced(costmap(0, Pose2(1, 0, 0)), Pose2(0, 2, math.pi / 2))
     np.testing.assert_allclose(moved.hits, [[0.0, 2.4]], atol=1e-12)
     assert moved.spec.origin == pytest.approx((0.5, 1.5, math.pi / 2))
+
+
+def test_a_long_drive_keeps_the_odometry_that_the_trajectory_needs() -> None:
+    """Corrected again and again, the map ends where one correction would put it."""
+    often, once = Keyframes(), Keyframes()
+    trajectory: list[tuple[int, Pose2]] = []
+    for step in range(6000):
+        stamp_ns = step * S // 10
+        pose = Pose2(8.0 * math.sin(step / 500), 8.0 * math.cos(step / 300), step / 400)
+        for each in (often, once):
+            each.trace(stamp_ns, pose)
+            each.add(costmap(stamp_ns, pose), pose)
+        if step % 50 == 17:
+            drifted = Pose2(pose.x + 1e-4 * step, pose.y, pose.yaw)
+            trajectory.append((stamp_ns + S // 30, drifted))
+            often.correct(trajectory)
+    assert len(often._trace) < len(once._trace) / 3
+    trajectory = [(stamp_ns, Pose2(0.5, 0.0, 0.1) @ p) for stamp_ns, p in trajectory]
+    ends = [[each.map_T_base for each in k.correct(trajectory)] for k in (often, once)]
+    assert len(ends[0]) == len(ends[1]) > 50
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
