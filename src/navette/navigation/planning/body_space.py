@@ -123,8 +123,7 @@ class BodySpace:
     def reached_from(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return (H, W) the cells that the body reaches from any of cells (N, 2)."""
         reached = np.zeros_like(self._open)
-        stack = np.empty(4 * reached.size + len(cells) + 16, np.int64)
-        _flood(self._open, reached, np.ascontiguousarray(cells, np.int64), stack)
+        _flood(self._open, reached, np.ascontiguousarray(cells, np.int64))
         return np.asarray(reached != 0)
 
     def fit(
@@ -310,17 +309,22 @@ def _split_headings(stamp: Masks) -> np.uint64:
 
 
 @kernel
-def _flood(open_: Masks, reached: Masks, cells: NDArray[np.int64], stack: Any) -> None:
+def _flood(open_: Masks, reached: Masks, cells: NDArray[np.int64]) -> None:
     """Reach neighbouring cells with the same heading, and neighbouring headings."""
     height, width = open_.shape
-    count = cells.shape[0]
-    for n in range(count):
+    stack, count = np.empty(open_.size, np.int64), 0
+    is_waiting = np.zeros(open_.shape, np.bool_)  # in the stack, once
+    for n in range(cells.shape[0]):
         row, column = cells[n, 0], cells[n, 1]
         reached[row, column] = open_[row, column]
-        stack[n] = row * width + column
+        if not is_waiting[row, column]:
+            is_waiting[row, column] = True
+            stack[count] = row * width + column
+            count += 1
     while count > 0:
         count -= 1
         row, column = stack[count] // width, stack[count] % width
+        is_waiting[row, column] = False
         here = reached[row, column]
         for i in range(max(0, row - 1), min(height, row + 2)):
             for j in range(max(0, column - 1), min(width, column + 2)):
@@ -328,7 +332,8 @@ def _flood(open_: Masks, reached: Masks, cells: NDArray[np.int64], stack: Any) -
                 if new == 0:
                     continue
                 reached[i, j] = _turned(reached[i, j] | new, open_[i, j])
-                if count < stack.size:
+                if not is_waiting[i, j]:
+                    is_waiting[i, j] = True
                     stack[count] = i * width + j
                     count += 1
 

@@ -260,7 +260,9 @@ class ActionServer(Waitable[Any]):
         response = self._action_type.Impl.SendGoalService.Response()
         if key not in self._goals:
             decision = await await_or_execute(self._goal_callback, request.goal)
-            response.accepted = decision is GoalResponse.ACCEPT
+            # While the callback awaits, a request of the same id may arrive.
+            is_new = key not in self._goals
+            response.accepted = is_new and decision is GoalResponse.ACCEPT
             if not isinstance(decision, GoalResponse):
                 self._logger.warning(
                     f"goal rejected: the goal callback returned {decision!r}, not a "
