@@ -33,7 +33,6 @@ from navette.navigation.planning.reports import RobotMotion
 from navette.navigation.planning.string_pulling import centers, pull
 from navette.navigation.planning.traversal import (
     LETHAL,
-    MOVES,
     Cell,
     EdgeTable,
     steps_cost,
@@ -119,12 +118,15 @@ def each_in_turn(
     return lambda: run(*next(turn))
 
 
+_MOVES = [move for move in itertools.product((-1, 0, 1), repeat=2) if any(move)]
+
+
 def graph_of(cost: np.ndarray, table: EdgeTable) -> coo_matrix:
     """Return the grid as a SciPy graph: one edge per legal move."""
     index = np.arange(cost.size).reshape(cost.shape)
     free = table.straight[cost] > 0
     rows, columns, weights = [], [], []
-    for dr, dc in MOVES:
+    for dr, dc in _MOVES:
         here = _shifted(-dr, -dc, cost.shape)
         there = _shifted(dr, dc, cost.shape)
         legal = free[here] & free[there]

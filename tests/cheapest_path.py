@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from navette.navigation.planning.traversal import (
     DIAGONAL,
+    LETHAL,
     MAX_PASSABLE_COST,
     STRAIGHT,
     EdgeTable,
@@ -20,7 +21,7 @@ def cheapest(
     table: EdgeTable,
 ) -> int | None:
     """Cost in units of the cheapest path, by plain Dijkstra with a heap."""
-    free = {tuple(cell) for cell in np.argwhere(cost < table.lethal_from).tolist()}
+    free = {tuple(cell) for cell in np.argwhere(cost < LETHAL).tolist()}
     best, waiting = {start: 0}, [(0, start)]
     if not {start, goal} <= free:
         return None

@@ -9,12 +9,13 @@ from cheapest_path import cheapest
 from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.connection import first_connected
-from navette.navigation.planning.string_pulling import centers, line_cost, pull
+from navette.navigation.planning.string_pulling import centers, pull
 from navette.navigation.planning.traversal import (
     LETHAL,
     EdgeTable,
     steps_cost,
 )
+from polyline_cost import line_cost
 
 Cell = tuple[int, int]
 COSTS = st.one_of(st.just(0), st.just(LETHAL), st.integers(0, LETHAL))

@@ -58,10 +58,10 @@ class XmlNode:
             raise self.error(f"attribute {key!r} is missing")
         return value
 
-    def words(self, tag: str, default: str = "") -> str:
-        """Text of a child, or the default if it is missing or empty."""
+    def words(self, tag: str) -> str:
+        """Text of a child; empty if it is missing."""
         child = self.find(tag)
-        return (child.text.strip() if child is not None else "") or default
+        return child.text.strip() if child is not None else ""
 
     def flag(self, tag: str, *, default: bool = False) -> bool:
         text = self.words(tag).lower()

@@ -72,7 +72,7 @@ class InProcessPublisher(PublisherPort):
             sink(item)
 
     def _store(self, item: Item) -> tuple[tuple[Sink, ...], tuple[Sink, ...]]:
-        """Add a latched sample; return the sinks of those who joined before."""
+        """Add a latched sample; return the sinks of earlier readers."""
         assert self._history is not None
         with self._joining:
             self._history.append(item)

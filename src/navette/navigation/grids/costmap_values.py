@@ -19,7 +19,7 @@ def costmap_values(cells: NDArray[np.int8]) -> NDArray[np.uint8]:
     return np.asarray(_TABLE[np.clip(cells, -1, 100).astype(np.int16) + 1])
 
 
-def costmap_message(grid: OccupancyGrid, layer: str = "master") -> Costmap:
+def costmap_message(grid: OccupancyGrid) -> Costmap:
     """Return an occupancy grid as ``nav2_msgs/msg/Costmap``."""
     info = grid.info
     return Costmap(
@@ -27,7 +27,7 @@ def costmap_message(grid: OccupancyGrid, layer: str = "master") -> Costmap:
         metadata=CostmapMetaData(
             map_load_time=info.map_load_time,
             update_time=grid.header.stamp,
-            layer=layer,
+            layer="master",
             resolution=info.resolution,
             size_x=info.width,
             size_y=info.height,

@@ -43,14 +43,11 @@ class AvoidedPlaces:
             return False
         return self.clear()
 
-    def note_stuck(self, ahead: Poses, front_m: float, gap_m: float = 0.0) -> None:
-        """Note the path (N, 3) ahead of a stuck robot.
-
-        Its body ends at ``front_m``, and what stops it begins ``gap_m`` farther.
-        """
+    def note_stuck(self, ahead: Poses, front_m: float) -> None:
+        """Note the path (N, 3) ahead of a stuck robot; its body ends at ``front_m``."""
         steps = np.hypot(*np.diff(ahead[:, :2], axis=0).T)
         metres = np.concatenate([[0.0], np.cumsum(steps)])
-        index = int(np.searchsorted(metres, front_m + gap_m + _RADIUS_M))
+        index = int(np.searchsorted(metres, front_m + _RADIUS_M))
         if index < len(ahead):
             self._candidate = (float(ahead[index, 0]), float(ahead[index, 1]))
 

@@ -8,7 +8,6 @@ nothing; a flood fill that does not reach the goal proves that no path exists.
 
 import math
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray

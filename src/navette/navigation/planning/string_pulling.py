@@ -19,13 +19,14 @@ from navette.navigation.planning.traversal import STRAIGHT, EdgeTable
 
 Points = NDArray[np.float64]
 
+_PASSES = 3  # along the chain, backwards, and forwards again
+
 
 def pull(
     cost: NDArray[np.uint8],
     points: Points,
     *,
     table: EdgeTable | None = None,
-    passes: int = 3,
 ) -> Points:
     """Return points (M, 2) of a straighter line with the same ends.
 
@@ -37,25 +38,13 @@ def pull(
     table = table or EdgeTable()
     factor = table.straight / STRAIGHT
     line = _checked(cost, points)
-    for _ in range(passes):
+    for _ in range(_PASSES):
         # Reversed each time: a forward pass leaves slack at the far side.
         fine = _cut(line)
         kept = np.empty(len(fine), np.int64)
         count = _pull_once(cost, fine, factor, np.empty(len(fine)), kept)
         line = fine[kept[:count]][::-1]
-    return np.ascontiguousarray(line[::-1] if passes % 2 else line)
-
-
-def line_cost(
-    cost: NDArray[np.uint8], points: Points, *, table: EdgeTable | None = None
-) -> float:
-    """Return the cost of a polyline (N, 2) u, v in cells; a free cell's width costs 1.
-
-    Infinite if it meets a closed cell.
-    """
-    table = table or EdgeTable()
-    line = _checked(cost, points)
-    return float(_line_cost(cost, line, table.straight / STRAIGHT))
+    return np.ascontiguousarray(line[::-1])
 
 
 def centers(cells: NDArray[np.int64]) -> Points:
@@ -74,16 +63,6 @@ def _checked(cost: NDArray[np.uint8], points: Points) -> Points:
             f"cells: expected (N, 2) points u, v inside a uint8 grid"
         )
     return line
-
-
-@kernel(allocates=False)
-def _line_cost(cost: Any, line: Any, factor: Any) -> float:
-    total = 0.0
-    for i in range(line.shape[0] - 1):
-        total += _segment_cost(
-            cost, line[i, 0], line[i, 1], line[i + 1, 0], line[i + 1, 1], factor
-        )
-    return total
 
 
 def _cut(line: Points) -> Points:
@@ -118,7 +97,7 @@ def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
     n = fine.shape[0]
     paid[0], kept[0] = 0.0, 0
     for i in range(n - 1):
-        paid[i + 1] = paid[i] + _segment_cost(
+        paid[i + 1] = paid[i] + segment_cost(
             cost, fine[i, 0], fine[i, 1], fine[i + 1, 0], fine[i + 1, 1], factor
         )
     count = 1
@@ -154,7 +133,7 @@ def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
 def _shorter(
     cost: Any, fine: Any, paid: Any, anchor: int, reached: int, factor: Any
 ) -> bool:
-    straight = _segment_cost(
+    straight = segment_cost(
         cost,
         fine[anchor, 0],
         fine[anchor, 1],
@@ -166,7 +145,7 @@ def _shorter(
 
 
 @kernel(allocates=False)
-def _segment_cost(
+def segment_cost(
     cost: Any, u0: float, v0: float, u1: float, v1: float, factor: Any
 ) -> float:
     """Integrate the factor along a segment (Amanatides and Woo 1987); inf = closed.

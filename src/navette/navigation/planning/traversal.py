@@ -25,19 +25,6 @@ MAX_PASSABLE_COST = 252
 Cell = tuple[int, int]
 """(row, column)."""
 
-# Moves in the order of the direction code (0-7), as (row, column) steps; the
-# opposite of code k is k ^ 1 for straight moves and 11 - k for diagonal ones.
-MOVES: tuple[Cell, ...] = (
-    (-1, 0),
-    (1, 0),
-    (0, -1),
-    (0, 1),
-    (-1, -1),
-    (-1, 1),
-    (1, -1),
-    (1, 1),
-)
-
 
 @dataclass(frozen=True)
 class EdgeTable:
@@ -47,15 +34,10 @@ class EdgeTable:
     """
 
     weight: float = 0.0
-    lethal_from: int = LETHAL
 
     def __post_init__(self) -> None:
         if not 0 <= self.weight <= 1000:
             raise InvalidValueError(f"edge weight {self.weight!r}: expected 0 to 1000")
-        if not 1 <= self.lethal_from <= LETHAL:
-            raise InvalidValueError(
-                f"lethal_from {self.lethal_from!r}: expected 1 to {LETHAL}"
-            )
 
     @cached_property
     def straight(self) -> NDArray[np.int32]:
@@ -75,7 +57,7 @@ class EdgeTable:
         table = np.rint(unit * (1 + self.weight * cost / MAX_PASSABLE_COST)).astype(
             np.int32
         )
-        table[self.lethal_from :] = 0
+        table[LETHAL:] = 0
         return table
 
 

@@ -46,7 +46,6 @@ class ScriptedRobot:
         self.speed = (0.0, 0.0)
         self.calls: list[ScriptedCall] = []
         self.messages: dict[str, Any] = {}
-        self.logged: list[str] = []
         self.transforms: set[tuple[str, str]] = set()
         self.is_at_rest = True
 
@@ -79,9 +78,6 @@ class ScriptedRobot:
 
     def newest(self, topic: str, message_type: str, *, latched: bool = False) -> Any:
         return self.messages.get(topic)
-
-    def log(self, text: str, *, warn: bool = False) -> None:
-        self.logged.append(text)
 
     def _call(self, name: str, goal: Any) -> ScriptedCall:
         call = ScriptedCall(name, goal)

@@ -165,7 +165,5 @@ def test_field_holds_the_cost_to_the_cheapest_goal() -> None:
 def test_the_edge_table_refuses_invalid_values() -> None:
     with pytest.raises(InvalidValueError, match="weight"):
         EdgeTable(weight=-1.0)
-    with pytest.raises(InvalidValueError, match="lethal_from"):
-        EdgeTable(lethal_from=0)
     with pytest.raises(InvalidValueError, match="uint8"):
         AStar().search(np.zeros((3, 3), np.int32), (0, 0), (1, 1))

@@ -8,8 +8,9 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.navigation.planning.astar import AStar
-from navette.navigation.planning.string_pulling import centers, line_cost, pull
+from navette.navigation.planning.string_pulling import centers, pull
 from navette.navigation.planning.traversal import LETHAL, EdgeTable
+from polyline_cost import line_cost
 
 Cell = tuple[int, int]
 

@@ -287,13 +287,6 @@ class NodeRobot:
             )
         return self._newest[topic]
 
-    def log(self, text: str, *, warn: bool = False) -> None:
-        logger = self._node.get_logger()
-        if warn:
-            logger.warning(text)
-        else:
-            logger.info(text)
-
     def poll(self) -> None:
         """Look for missing servers; call this periodically."""
         for call in self._calls:

@@ -87,5 +87,3 @@ class RobotAccess(Protocol):
 
         Subscribes on the first call.
         """
-
-    def log(self, text: str, *, warn: bool = False) -> None: ...
