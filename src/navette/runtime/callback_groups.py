@@ -141,9 +141,14 @@ class CallbackGroup:
     def release(self) -> None:
         """Undo one :meth:`hold`; parked events run first, in their old order."""
         self.held -= 1
-        if self.held == self.floor and self.parked and self.ready is not None:
-            self.ready.extendleft(reversed(self.parked))
-            self.parked.clear()
+        if self.held > self.floor or not self.parked or self.ready is None:
+            return
+        if self.exclusive and self.threads is not None:
+            # It holds the group until its thread has run it; then the next one follows.
+            self.ready.appendleft(self.parked.popleft())
+            return
+        self.ready.extendleft(reversed(self.parked))
+        self.parked.clear()
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):

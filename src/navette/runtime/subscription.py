@@ -71,6 +71,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         "_callback",
         "_direct_limit",
         "_entities",
+        "_events",
         "_filter",
         "_filter_options",
         "_loop",
@@ -122,6 +123,8 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
         self._loop = entities.context.loop
         self._ready = self._loop.ready
+        # One entry for each event that waits: threads add and remove them safely.
+        self._events: deque[None] = deque()
         self._received = 0
         self._entities = entities
         self._watch = watch
@@ -193,6 +196,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         queue = self._queue
         if len(queue) < self._direct_limit:
             queue.append(item)
+            self._events.append(None)
             self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
@@ -202,11 +206,12 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
     def _replace_oldest(self, item: Item) -> None:
         """Queue a sample that passed the filter or finds the queue full."""
         queue = self._queue
-        is_full = len(queue) == queue.maxlen
         queue.append(item)  # drops the oldest of a full queue in the same step
-        # A driving thread may have taken a sample just before. Then the queue was not
-        # full and this sample needs an event. A surplus event has no effect.
-        if not is_full or self._loop.is_driven_elsewhere:
+        # If it dropped one, this sample has the event of that one, unless a driving
+        # thread has just taken it. An event more has no effect, but one for each sample
+        # would hold up all other callbacks.
+        if len(self._events) < len(queue):
+            self._events.append(None)
             self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
@@ -214,8 +219,9 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
     def run(self) -> Any:
         """Run the callback with the oldest queued sample."""
         try:
+            self._events.pop()
             item = self._queue.popleft()
-        except IndexError:  # destroyed while the event was queued, or a surplus event
+        except IndexError:  # destroyed while the event was queued, or one more event
             return None
         if self._plain:
             message = item[0]
