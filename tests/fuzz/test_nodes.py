@@ -140,7 +140,7 @@ def test_parameters(subject: Subject) -> None:
     with running(subject) as (graph, node, feed):
         Outputs(graph, node)
         known = infos(subject.node_class.PARAMS)
-        for name in list(node.known_parameters() or []):
+        for name in list(node._node_known_parameters() or []):
             before = node.get_parameter(name)
             values = (
                 *extremes(before.type_, known.get(name)),

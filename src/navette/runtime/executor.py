@@ -102,7 +102,7 @@ class Executor:
         if node.executor is not None:
             node.executor.remove_node(node)
         self._nodes.append(node)
-        node.attach(self)
+        node._node_attach(self)
         self.loop.wake()
         return True
 
@@ -110,7 +110,7 @@ class Executor:
         """Hold the node's callbacks."""
         if node in self._nodes:
             self._nodes.remove(node)
-            node.detach()
+            node._node_detach()
 
     def get_nodes(self) -> list[Node]:
         return list(self._nodes)
@@ -139,15 +139,16 @@ class Executor:
         self, future: Future[Any], timeout_sec: float | None = None
     ) -> None:
         """Run until ``future`` is done or the timeout expires."""
-        self._run(until_ns=self.loop.deadline_ns(timeout_sec), done=future.done)
+        with future.waking(self.loop):
+            self._run(until_ns=self.loop.deadline_ns(timeout_sec), done=future.done)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
     ) -> None:
         """Run one event, unless ``future`` is done first."""
-        self._run(
-            until_ns=self.loop.deadline_ns(timeout_sec), done=future.done, limit=1
-        )
+        until_ns = self.loop.deadline_ns(timeout_sec)
+        with future.waking(self.loop):
+            self._run(until_ns=until_ns, done=future.done, limit=1)
 
     def can_execute(self, entity: Entity) -> bool:
         """Return whether the entity's group lets its callback start now."""
@@ -200,10 +201,13 @@ class Executor:
         timeout_ns: int | None = None,
     ) -> bool:
         """Run until the condition is true or the future done; return whether it is."""
-        done = condition.done if isinstance(condition, Future) else condition
         until_ns = None if timeout_ns is None else self.now_ns + timeout_ns
-        self._run(until_ns=until_ns, done=done)
-        return done()
+        if not isinstance(condition, Future):
+            self._run(until_ns=until_ns, done=condition)
+            return condition()
+        with condition.waking(self.loop):
+            self._run(until_ns=until_ns, done=condition.done)
+        return condition.done()
 
     def stop(self) -> None:
         """Make running spins return after the current callback; from any thread."""
@@ -228,7 +232,7 @@ class Executor:
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Stop, and remove all nodes."""
-        self.stop()
+        Executor.stop(self)  # a program's subclass may have a stop() of its own
         for node in tuple(self._nodes):
             self.remove_node(node)
         return True

@@ -2,7 +2,9 @@
 
 import sys
 import threading
-from collections.abc import Callable, Coroutine, Generator
+import warnings
+from collections.abc import Callable, Coroutine, Generator, Iterator
+from contextlib import contextmanager
 from typing import Any, Generic, Protocol, TypeVar
 
 from navette.runtime.callback_groups import CallbackGroup
@@ -43,6 +45,7 @@ class Future(Generic[T]):
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._lock = threading.Lock()
         self._loop: Scheduler | None = None
+        self._waiting: list[Scheduler] = []
         self._set_executor(executor)
 
     def __await__(self) -> Generator[Any, None, T | None]:
@@ -105,6 +108,23 @@ class Future(Generic[T]):
                 return
         self._schedule(callback)
 
+    def remove_done_callback(self, callback: Callable[["Future[T]"], object]) -> bool:
+        """Remove a done callback; False if it is not registered or was scheduled."""
+        with self._lock:
+            found = callback in self._callbacks
+            if found:
+                self._callbacks.remove(callback)
+            return found
+
+    @contextmanager
+    def waking(self, loop: Scheduler) -> Iterator[None]:
+        """Wake a loop that waits for the future when it is done."""
+        self._waiting.append(loop)
+        try:
+            yield
+        finally:
+            self._waiting.remove(loop)
+
     def _run_callbacks(self) -> None:
         with self._lock:
             callbacks, self._callbacks = self._callbacks, []
@@ -112,12 +132,20 @@ class Future(Generic[T]):
             self._schedule(callback)
         if self._loop is not None:
             self._loop.wake()
+        for loop in (*self._waiting,):
+            loop.wake()
 
     def _schedule(self, callback: Callable[["Future[T]"], object]) -> None:
-        if self._loop is None:
-            callback(self)
-        else:
+        if self._loop is not None:
             self._loop.call_soon(lambda: callback(self), "future")
+            return
+        try:
+            callback(self)
+        except Exception as error:
+            # As in rclpy: the other callbacks are called, whoever set the result.
+            warnings.warn(
+                f"exception in a done callback: {error!r}", RuntimeWarning, stacklevel=2
+            )
 
     def _set_executor(self, executor: Any) -> None:
         self._loop = getattr(executor, "loop", executor)

@@ -405,7 +405,7 @@ class EventLoop:
             if until_ns is not None and self._set_back_ns != set_back_ns:
                 until_ns += self._set_back_ns - set_back_ns
                 set_back_ns = self._set_back_ns
-            count += self._run_ready(done, None if limit is None else limit - count)
+            count += self._run_ready(done, self._batch(limit, count))
             if done is not None and done():
                 return
             if limit is not None and count >= limit:
@@ -420,6 +420,12 @@ class EventLoop:
                 continue
             if not self._advance(until_ns):
                 return
+
+    def _batch(self, limit: int | None, count: int) -> int | None:
+        """Return how many events to run before timers are looked at; None: all."""
+        if self._heap and not self.clock.is_virtual:
+            return 1
+        return None if limit is None else limit - count
 
     def _collect(self) -> None:
         """Move due events to ``ready``; run the calls of other threads."""
@@ -474,16 +480,12 @@ class EventLoop:
     ) -> int:
         """Run the events that are ready at the start, at most ``limit``.
 
-        An ``interruptible`` batch ends early after :meth:`wake`, and in real time when
-        a timer is due.
+        An ``interruptible`` batch ends early after :meth:`wake`.
         """
-        ready, heap = self.ready, self._heap
-        is_live = interruptible and not self.clock.is_virtual
+        ready = self.ready
         count = 0
         for _ in range(len(ready)):
             if (interruptible and self._attention) or not ready or count == limit:
-                break
-            if is_live and count and heap and heap[0][0] <= self.clock.now_ns:
                 break
             if done is not None and done():
                 break

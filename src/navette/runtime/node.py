@@ -252,12 +252,12 @@ class Node(HasHandle, GraphQueries, NodeParameters):
         if executor is not None:
             executor.add_node(self)
 
-    def attach(self, executor: Any) -> None:
+    def _node_attach(self, executor: Any) -> None:
         """Let callbacks run; called by the executor that the node is added to."""
         self._node_executor = executor
         self._node_entities.release(executor.threads)
 
-    def detach(self) -> None:
+    def _node_detach(self) -> None:
         """Hold callbacks; called by the executor that the node is removed from."""
         self._node_executor = None
         self._node_entities.hold()
@@ -374,7 +374,7 @@ class Node(HasHandle, GraphQueries, NodeParameters):
 
         The callback may be a coroutine function.
         """
-        return self.serve(
+        return self._node_serve(
             interface_name(srv_type, "srv"),
             srv_name,
             callback,
@@ -382,7 +382,7 @@ class Node(HasHandle, GraphQueries, NodeParameters):
             callback_group=callback_group,
         )
 
-    def serve(
+    def _node_serve(
         self,
         type_name: str,
         srv_name: str,

@@ -211,7 +211,7 @@ class NodeParameters:
         result.prefixes = list(dict.fromkeys(prefix for prefix in found if prefix))
         return result
 
-    def known_parameters(self) -> list[str] | None:
+    def _node_known_parameters(self) -> list[str] | None:
         """Return the declared names; None if undeclared parameters are allowed."""
         return (
             None if self._node_store.allow_undeclared else list(self._node_store.values)

@@ -27,7 +27,7 @@ class ParameterOwner(Protocol):
     """The part of a node that :meth:`ParameterOverrides.check` needs."""
 
     def get_fully_qualified_name(self) -> str: ...
-    def known_parameters(self) -> list[str] | None:
+    def _node_known_parameters(self) -> list[str] | None:
         """Return the declared names; None if the node accepts any."""
 
 
@@ -128,7 +128,10 @@ class ParameterOverrides:
             ParameterError: names the file or argument and the existing nodes or
                 parameters.
         """
-        known = {n.get_fully_qualified_name(): n.known_parameters() for n in nodes}
+        known = {
+            each.get_fully_qualified_name(): each._node_known_parameters()
+            for each in nodes
+        }
         for override in self.sets:
             matching = [name for name in known if override.matches(name)]
             if not matching and not override.seen_nodes:

@@ -28,18 +28,27 @@ class Rate:
         """
         if not self._context.ok() or self._destroyed:
             raise ROSInterruptException
-        now = self._clock.now_ns
-        if self._next_ns > now + self._period_ns:  # the clock was set back
-            self._next_ns = now + self._period_ns
-        self._clock.sleep_until_ns(
-            self._next_ns, self._context, lambda: self._destroyed
-        )
+        while not self._clock.sleep_until_ns(
+            self._end_ns(), self._context, lambda: self._destroyed or self._is_set_back
+        ):
+            if not self._is_set_back:
+                break
         if not self._context.ok() or self._destroyed:
             raise ROSInterruptException
         now = self._clock.now_ns
         # Skip missed periods and keep the phase.
         missed = max(0, (now - self._next_ns) // self._period_ns)
         self._next_ns += (missed + 1) * self._period_ns
+
+    @property
+    def _is_set_back(self) -> bool:
+        return self._next_ns > self._clock.now_ns + self._period_ns
+
+    def _end_ns(self) -> int:
+        """Return the end of the period, which begins anew after a step back."""
+        if self._is_set_back:
+            self._next_ns = self._clock.now_ns + self._period_ns
+        return self._next_ns
 
     def destroy(self) -> None:
         self._destroyed = True

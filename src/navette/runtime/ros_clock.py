@@ -157,7 +157,7 @@ class Clock(HasHandle):
         return JumpHandle(self, threshold, pre_callback, post_callback)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
-        """Run events until the time ``until``; False on shutdown."""
+        """Run events until the time ``until``; see :meth:`sleep_until_ns`."""
         if until.clock_type != self._clock_type:
             raise ValueError(
                 f"until has the clock type {until.clock_type.name}, the clock has "
@@ -166,7 +166,7 @@ class Clock(HasHandle):
         return self.sleep_until_ns(until.nanoseconds, context or self._context)
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
-        """Run events for ``rel_time``; False on shutdown."""
+        """Run events for ``rel_time``; see :meth:`sleep_until_ns`."""
         until_ns = self.now_ns + rel_time.nanoseconds
         return self.sleep_until_ns(until_ns, context or self._context)
 
@@ -176,12 +176,19 @@ class Clock(HasHandle):
         context: Context,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Run the context's events until the time, or until ``interrupted`` holds."""
+        """Run the context's events until the time, or until ``interrupted`` holds.
+
+        False on shutdown, and if simulated time begins or ends meanwhile.
+        """
         if not context.ok():
             raise NotInitializedException("cannot sleep without a valid context")
+        was_overridden = self._is_overridden
+
+        def has_other_source() -> bool:
+            return self._is_overridden != was_overridden
 
         def done() -> bool:
-            return self.now_ns >= until_ns or interrupted()
+            return has_other_source() or self.now_ns >= until_ns or interrupted()
 
         if context.loop is not self._loop and not self._is_overridden:
             # The clock's own loop, which would ring the alarm, may not be running.
@@ -192,7 +199,7 @@ class Clock(HasHandle):
             self.schedule(until_ns, alarm)
             context.loop.run(done=done)
             alarm.token = -1
-        return context.ok() and self.now_ns >= until_ns
+        return context.ok() and not has_other_source() and self.now_ns >= until_ns
 
     @property
     def _is_overridden(self) -> bool:
@@ -247,8 +254,8 @@ class ROSClock(Clock):
         before = self._override_ns
         change = ClockChange.ROS_TIME_NO_CHANGE
         if before is None:
-            change = ClockChange.ROS_TIME_ACTIVATED
-            before = self._loop.clock.now_ns
+            # As in rcl, whose clocks are not compared.
+            change, before = ClockChange.ROS_TIME_ACTIVATED, time_ns
         jump = TimeJump(change, Duration(nanoseconds=time_ns - before))
         handles = [h for h in self._jump_handles if h.threshold.is_met_by(jump)]
         for handle in handles:
@@ -272,8 +279,7 @@ class ROSClock(Clock):
         """Return to the context's time."""
         if self._override_ns is None:
             return
-        delta = self._loop.clock.now_ns - self._override_ns
-        jump = TimeJump(ClockChange.ROS_TIME_DEACTIVATED, Duration(nanoseconds=delta))
+        jump = TimeJump(ClockChange.ROS_TIME_DEACTIVATED, Duration())
         handles = [h for h in self._jump_handles if h.threshold.is_met_by(jump)]
         for handle in handles:
             if handle.pre_callback is not None:
@@ -282,3 +288,4 @@ class ROSClock(Clock):
         for handle in handles:
             if handle.post_callback is not None:
                 handle.post_callback(jump)
+        self._loop.wake()

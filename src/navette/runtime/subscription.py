@@ -141,6 +141,10 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self._plain = not self.raw and not self._takes_info
 
     @property
+    def callback_group(self) -> CallbackGroup:
+        return self.group
+
+    @property
     def topic_name(self) -> str:
         return self.endpoint.topic
 

@@ -84,6 +84,10 @@ class Timer(Destroyable, Entity):
             self._arm()
 
     @property
+    def callback_group(self) -> CallbackGroup:
+        return self.group
+
+    @property
     def clock(self) -> Clock:
         return self._clock
 

@@ -153,7 +153,7 @@ def test_undeclared_parameters_may_be_allowed() -> None:
     # Setting it to NOT_SET takes it away again.
     assert node.set_parameters([Parameter("x", T.NOT_SET)])[0].successful
     assert not node.has_parameter("x")
-    assert node.known_parameters() is None
+    assert node._node_known_parameters() is None
     with pytest.raises(ParameterNotDeclaredException):
         node.undeclare_parameter("x")
 

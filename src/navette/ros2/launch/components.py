@@ -44,7 +44,7 @@ class ComponentManager:
             ("UnloadNode", "unload_node", self._on_unload),
             ("ListNodes", "list_nodes", self._on_list),
         ):
-            node.serve(f"{_PACKAGE}/{name}", f"~/_container/{service}", callback)
+            node._node_serve(f"{_PACKAGE}/{name}", f"~/_container/{service}", callback)
 
     def load(
         self, package: str, plugin: str, arguments: RosArguments, origin: str

@@ -101,7 +101,7 @@ class ActionServer(Waitable[Any]):
         impl = action_type.Impl
 
         def serve(service: Any, name: str, callback: Any, qos: QoSProfile) -> Any:
-            return node.serve(
+            return node._node_serve(
                 type_name(service),
                 f"{action_name}/_action/{name}",
                 callback,

@@ -222,7 +222,7 @@ class LifecycleNodeMixin(ManagedEntity):
                 self._lifecycle_on_get_graph,
             ),
         ):
-            self._lifecycle_node.serve(
+            self._lifecycle_node._node_serve(
                 f"lifecycle_msgs/srv/{type_name}",
                 f"{prefix}/{name}",
                 callback,

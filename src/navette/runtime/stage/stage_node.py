@@ -333,7 +333,7 @@ class StageNode(Node):
             if not self.has_parameter(name) and not override.is_for_all:
                 node = self.get_fully_qualified_name()
                 see_all = f"navette param list {node}, while it runs"
-                known = list(self.known_parameters() or [])
+                known = list(self._node_known_parameters() or [])
                 raise ParameterError(
                     f"{override.origin}: node {node} has no parameter {name!r}"
                     f"{instead_of(name, known, see_all=see_all)}"

@@ -30,7 +30,8 @@ class Buffer(MessageCore, BufferInterface):
         self._waiting: list[tuple[Callable[[], bool], Future[Any]]] = []
         if node is not None:
             self.attach(node)
-            node.serve("tf2_msgs/srv/FrameGraph", "tf2_frames", self._serve_frames)
+            service = "tf2_msgs/srv/FrameGraph"
+            node._node_serve(service, "tf2_frames", self._serve_frames)
 
     def attach(self, node: Any) -> None:
         """Use the clock of this node unless the buffer has a node already."""
