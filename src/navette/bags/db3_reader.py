@@ -321,7 +321,8 @@ class Db3Reader(BagReader):
 
 
 def _open(uri: str) -> sqlite3.Connection:
-    database = sqlite3.connect(uri, uri=True)
+    # A player reads ahead in a thread; SQLite takes turns by itself.
+    database = sqlite3.connect(uri, uri=True, check_same_thread=False)
     try:
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
         database.text_factory = _text

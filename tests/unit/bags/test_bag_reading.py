@@ -56,6 +56,15 @@ def test_written_messages_are_read(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
+def test_a_thread_of_a_player_reads_ahead(tmp_path: Path, suffix: str) -> None:
+    with open_bag(write_sample(tmp_path / f"a.{suffix}", 101)) as reader:
+        feed = PrefetchingFeed(reader.messages())
+        read = [message for message in iter(feed.pop, None)]
+        feed.close()
+    assert fields_of(read) == fields_of(sample(101))
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
 def test_a_recording_is_found_without_its_suffix(tmp_path: Path, suffix: str) -> None:
     path = write_sample(tmp_path / f"subset.{suffix}", 3)
     with open_bag(tmp_path / "subset") as reader:

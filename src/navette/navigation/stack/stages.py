@@ -9,7 +9,9 @@ import argparse
 import functools
 import math
 import sys
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,13 +29,28 @@ if TYPE_CHECKING:
     from navette.sim.params import SimParams
 
 
+# Held by the stage of this process that starts: modules of one package that two threads
+# import at once may fail with Python's import deadlock.
+_starting = threading.Lock()
+
+
+@contextmanager
+def _others_may_start() -> Iterator[None]:
+    _starting.release()
+    try:
+        yield
+    finally:
+        _starting.acquire()
+
+
 def _program(main: Callable[[], None]) -> Callable[[], None]:
-    """Report user errors in one line instead of a traceback."""
+    """Start one stage at a time; report user errors in one line, not a traceback."""
 
     @functools.wraps(main)
     def run() -> None:
         try:
-            main()
+            with _starting:
+                main()
         except CallbackError:
             raise  # a fault in the program: show its traceback
         except NavetteError as error:
@@ -529,14 +546,16 @@ def _run(
     context = Context(clock=clock)
     context.overrides.sets += profile.sets
     try:
-        context.init(args=sys.argv)
+        with _others_may_start():
+            context.init(args=sys.argv)
         if resolved is not None:
             resolved.rename_topics(context)
         node = make(context)
         context.overrides.check_used_by(context.nodes)
         for other in context.nodes:
             runtime.get_global_executor(context).add_node(other)
-        runtime.spin(node)
+        with _others_may_start():
+            runtime.spin(node)
     except KeyboardInterrupt:
         pass  # the usual end
     finally:
