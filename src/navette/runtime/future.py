@@ -142,7 +142,8 @@ class Future(Generic[T]):
         try:
             callback(self)
         except Exception as error:
-            # As in rclpy: the other callbacks are called, whoever set the result.
+            # As in rclpy: the other callbacks are called, and the setter of the result
+            # continues.
             warnings.warn(
                 f"exception in a done callback: {error!r}", RuntimeWarning, stacklevel=2
             )

@@ -45,7 +45,7 @@ class Rate:
         return self._next_ns > self._clock.now_ns + self._period_ns
 
     def _end_ns(self) -> int:
-        """Return the end of the period, which begins anew after a step back."""
+        """Return the end of the period, which is restarted after a step back."""
         if self._is_set_back:
             self._next_ns = self._clock.now_ns + self._period_ns
         return self._next_ns

@@ -25,6 +25,7 @@ from bag_samples import (
 from navette.bags import BagMessage, BagWriter, open_bag, parse_qos, qos_text
 from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry
 from navette.bags.message_types import Decoder
+from navette.bags.play import PrefetchingFeed
 from navette.bags.summary import summarise
 from navette.bags.writing import open_writer
 from navette.errors import FileFormatError
@@ -59,7 +60,7 @@ def test_written_messages_are_read(tmp_path: Path, suffix: str) -> None:
 def test_a_thread_of_a_player_reads_ahead(tmp_path: Path, suffix: str) -> None:
     with open_bag(write_sample(tmp_path / f"a.{suffix}", 101)) as reader:
         feed = PrefetchingFeed(reader.messages())
-        read = [message for message in iter(feed.pop, None)]
+        read = list(iter(feed.pop, None))
         feed.close()
     assert fields_of(read) == fields_of(sample(101))
 

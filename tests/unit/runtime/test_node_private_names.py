@@ -1,6 +1,11 @@
-"""Private names of nodes: none that a derived class may use for its own."""
+"""Names of nodes and executors: none that a derived class may use for its own."""
 
-from navette.runtime import Node
+from typing import Any
+
+import pytest
+
+from navette.msgs.std_srvs.srv import Trigger
+from navette.runtime import Node, SingleThreadedExecutor
 from navette.runtime.lifecycle import LifecycleNode
 from navette.runtime.testing import GraphHarness
 
@@ -41,3 +46,40 @@ def test_a_derived_class_has_names_of_its_own(graph: GraphHarness) -> None:
     assert robot.get_publishers_info_by_topic("chatter") == []
     assert robot.executor is None
     assert (robot._executor, robot._info, robot._store) == ("mine",) * 3
+
+
+def test_a_derived_class_has_methods_of_its_own(graph: GraphHarness) -> None:
+    class Gripper(Node):
+        def __init__(self) -> None:
+            super().__init__("gripper", context=graph.context)
+            self.create_service(Trigger, "grip", self.serve)
+            self.held: list[str] = []
+
+        def attach(self, name: str) -> None:
+            self.held.append(name)
+
+        def detach(self, name: str) -> None:
+            self.held.remove(name)
+
+        def serve(self, request: Any, response: Any) -> Any:
+            self.attach("box")
+            return response
+
+        def known_parameters(self, prefix: str) -> list[str]:
+            return [prefix]
+
+    gripper = graph.add(Gripper())
+    graph.call(Trigger, "/grip", Trigger.Request())
+    assert gripper.held == ["box"]
+    assert gripper.executor is not None
+    gripper.executor.remove_node(gripper)
+    assert gripper.executor is None
+
+
+def test_a_derived_executor_has_a_stop_of_its_own(graph: GraphHarness) -> None:
+    class Reasoned(SingleThreadedExecutor):
+        def stop(self, why: str) -> None:  # type: ignore[override]
+            pytest.fail(why)
+
+    executor = Reasoned(context=graph.context)
+    assert executor.shutdown()

@@ -202,6 +202,47 @@ def test_simulated_time_can_be_switched_off_again(
     assert not result.successful
 
 
+@pytest.mark.parametrize("begins", [False, True])
+def test_a_sleep_ends_when_simulated_time_begins_or_ends(
+    outside: tuple[Executor, Node, Node], begins: bool
+) -> None:
+    executor, node, simulator = outside
+    follows = Parameter("use_sim_time", value=begins)
+    if begins:
+        node.set_parameters([Parameter("use_sim_time", value=False)])
+    changed: list[int] = []
+
+    def change() -> None:
+        if not changed:
+            node.set_parameters([follows])
+            changed.append(executor.now_ns)
+
+    simulator.create_timer(0.3, change)
+    assert not node.get_clock().sleep_for(Duration(seconds=20))
+    assert changed == [executor.now_ns]
+
+
+def test_a_rate_begins_a_new_period_when_simulated_time_is_set_back(
+    outside: tuple[Executor, Node, Node],
+) -> None:
+    executor, node, simulator = outside
+    clock = simulator.create_publisher(ClockMsg, "/clock", 10)
+    stamps = iter([50.0, 50.5, 51.0, 51.5, 1.0, 1.5, 2.0, 2.5, 3.0])
+
+    def tell() -> None:
+        clock.publish(ClockMsg(clock=ns_to_stamp(round(next(stamps) * S))))
+
+    tell()
+    executor.spin_for(0)
+    simulator.create_timer(0.1, tell)
+    rate = node.create_rate(1.0)
+    ends = []
+    for _ in range(3):
+        rate.sleep()
+        ends.append(node.get_clock().now().nanoseconds / S)
+    assert ends == [51.0, 2.0, 3.0]
+
+
 def test_use_sim_time_as_an_argument() -> None:
     context = Context(clock=ManualClock())
     context.init(["--ros-args", "-p", "use_sim_time:=true"])

@@ -10,6 +10,7 @@ from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import (
     Context,
+    Executor,
     Future,
     Node,
     ReentrantCallbackGroup,
@@ -201,3 +202,47 @@ def test_numbers_of_entities() -> None:
     assert (total.num_subscriptions, total.num_guard_conditions) == (2, 2)
     assert repr(total) == "<NumberOfEntities(2, 2, 3, 0, 0, 4)>"
     assert total != 3
+
+
+@pytest.mark.parametrize("end", ["set_result", "set_exception", "cancel"])
+def test_a_spin_ends_when_another_thread_completes_its_future(end: str) -> None:
+    """A future without an executor, as programs make it."""
+    context = Context(clock=SystemClock())
+    executor = Executor(context=context)
+    future: Future[Any] = Future()
+    arguments = {"set_result": [1], "set_exception": [ValueError()], "cancel": []}
+
+    def complete() -> None:
+        while not executor.loop.waiting:
+            pass
+        getattr(future, end)(*arguments[end])
+
+    thread = threading.Thread(target=complete)
+    thread.start()
+    executor.spin_until_future_complete(future)
+    thread.join()
+    assert future.done()
+    context.shutdown()
+
+
+def test_every_done_callback_is_called_though_one_raises() -> None:
+    future: Future[int] = Future()
+    called: list[str] = []
+    future.add_done_callback(lambda _: 1 // 0)  # type: ignore[arg-type,return-value]
+    future.add_done_callback(lambda _: called.append("second"))
+    removed = called.append
+    future.add_done_callback(removed)  # type: ignore[arg-type]
+    assert future.remove_done_callback(removed)  # type: ignore[arg-type]
+    assert not future.remove_done_callback(removed)  # type: ignore[arg-type]
+    with pytest.warns(RuntimeWarning, match="ZeroDivisionError"):
+        future.set_result(1)
+    assert called == ["second"]
+
+
+def test_every_entity_has_its_callback_group(graph: GraphHarness) -> None:
+    node, group = graph.node, ReentrantCallbackGroup()
+    timer = node.create_timer(1.0, lambda: None, callback_group=group)
+    reader = node.create_subscription(
+        String, "text", lambda _: None, 10, callback_group=group
+    )
+    assert timer.callback_group is reader.callback_group is group
