@@ -6,11 +6,12 @@ virtual clock, where runs are deterministic.
 """
 
 import os
+import threading
 from collections.abc import Callable, Coroutine
 from functools import partial
 from typing import Any, Self
 
-from navette.errors import InvalidValueError
+from navette.errors import CallbackError, InvalidValueError
 from navette.runtime.callback_threads import CallbackThreads
 from navette.runtime.clock import ContextClock
 from navette.runtime.context import Context, get_default_context
@@ -62,6 +63,9 @@ class Executor:
         self._nodes: list[Node] = []
         self._stopping = False
         self._depth = 0  # number of nested spins
+        self._thread = 0  # that spins
+        # Raised by a callback of a node here, while another thread drove the loop.
+        self._error: CallbackError | SystemExit | None = None
 
     @property
     def context(self) -> Context:
@@ -256,12 +260,55 @@ class Executor:
         elif self.loop.in_driver_thread:
             check_wait("spin", in_driver_thread=True, same_group=False, exclusive=False)
         self._depth += 1
+        outer, self._thread = self._thread, threading.get_ident()
         try:
-            self.loop.run(
-                until_ns=until_ns, done=done, limit=limit, stop=lambda: self._stopping
-            )
+            while not self._ran(until_ns, done, limit):
+                pass
         finally:
             self._depth -= 1
+            self._thread = outer
+
+    def _ran(
+        self,
+        until_ns: int | None,
+        done: Callable[[], bool] | None,
+        limit: int | None,
+    ) -> bool:
+        """Run events; False if an executor of another thread gets an exception."""
+        try:
+            self.loop.run(
+                until_ns=until_ns,
+                done=done,
+                limit=limit,
+                stop=lambda: self._stopping or self._error is not None,
+            )
+        except (CallbackError, SystemExit) as error:
+            owner = self._owner_of(error)
+            if owner is None:
+                raise
+            owner._error = error
+            owner.wake()
+            return limit is not None  # then that event was all
+        own, self._error = self._error, None
+        if own is not None:
+            raise own
+        return True
+
+    def _owner_of(self, error: CallbackError | SystemExit) -> "Executor | None":
+        """Return the executor of another thread whose node's callback raised."""
+        if isinstance(error, CallbackError):
+            name = error.node
+        elif self.loop.exit_of is not None and self.loop.exit_of[0] is error:
+            name = self.loop.exit_of[1]
+        else:
+            return None
+        for node in self._context.nodes:
+            if node.get_fully_qualified_name() == name:
+                owner: Executor | None = node.executor
+                if owner is None or not owner._depth or owner._thread == self._thread:
+                    return None
+                return owner
+        return None
 
 
 #: If not overridden, :meth:`Executor.spin` runs events without calling it.

@@ -59,6 +59,8 @@ class EventLoop:
         self._closed = False
         self._driver: int | None = None
         self._running: Entity | None = None
+        #: The last SystemExit of a callback, and the node whose callback it was.
+        self.exit_of: tuple[SystemExit, str] | None = None
         self._lock = threading.Lock()
         # Entered by itself: Ctrl-C inside the condition's __enter__ leaves it locked.
         self._turn_lock = threading.RLock()
@@ -505,7 +507,7 @@ class EventLoop:
             count += 1
             try:
                 result = entity.run()
-            except Exception as error:  # a callback may raise anything
+            except (Exception, SystemExit) as error:  # a callback may raise anything
                 self._raise(entity.origin(), error)
             if result is not None and isinstance(result, Coroutine):
                 self._start(entity, result, rules)
@@ -578,7 +580,12 @@ class EventLoop:
             group.hold()
             task.add_done_callback(lambda _: group.release())
 
-    def _raise(self, origin: tuple[str, str], error: Exception) -> NoReturn:
+    def _raise(
+        self, origin: tuple[str, str], error: Exception | SystemExit
+    ) -> NoReturn:
+        if isinstance(error, SystemExit):
+            self.exit_of = error, origin[0]
+            raise error
         # A nested run or a coroutine's step has already named the source.
         if isinstance(error, CallbackError):
             raise error

@@ -25,6 +25,7 @@ from navette.runtime import (
     MutuallyExclusiveCallbackGroup,
     Node,
     ReentrantCallbackGroup,
+    SingleThreadedExecutor,
     VirtualClock,
 )
 from navette.runtime.exceptions import ROSInterruptException
@@ -315,3 +316,36 @@ def test_virtual_time_refuses_a_timer_without_period() -> None:
 def test_a_pool_needs_a_thread() -> None:
     with pytest.raises(ValueError, match="max_workers"):
         MultiThreadedExecutor(0, context=Context())
+
+
+@pytest.mark.parametrize("error", [SystemExit(5), ZeroDivisionError("half")])
+def test_an_exception_ends_the_spin_of_its_own_node(error: BaseException) -> None:
+    """The executor of another thread, which runs the callback, continues."""
+    context = Context()
+    main, helper = (SingleThreadedExecutor(context=context) for _ in range(2))
+    nodes = [Node(name, context=context) for name in ("main", "helper")]
+    for executor, node in zip((main, helper), nodes, strict=True):
+        executor.add_node(node)
+    ends: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def fail() -> None:
+        raise error
+
+    def spin() -> None:
+        helper.spin()
+        ends.put("stopped")
+
+    thread = threading.Thread(target=spin)
+    thread.start()
+    while not context.loop.is_running:
+        pass
+    nodes[0].create_timer(0.001, fail)
+    with pytest.raises(type(error)):
+        main.spin()
+    assert ends.empty()
+    assert thread.is_alive()
+    main.remove_node(nodes[0])
+    helper.stop()
+    assert ends.get(timeout=LIMIT_S) == "stopped"
+    thread.join()
+    context.shutdown()
