@@ -3,7 +3,13 @@
 from navette.geometry.covariance import largest_stddev
 from navette.geometry.drives import ACKERMANN, DIFFERENTIAL, DRIVES, OMNI
 from navette.geometry.footprint import Footprint
-from navette.geometry.se2 import Pose2, advanced, angle_difference, wrap_angle
+from navette.geometry.se2 import (
+    Pose2,
+    advanced,
+    angle_difference,
+    wrap_angle,
+    wrap_angles,
+)
 from navette.geometry.se3 import (
     Quaternion,
     Transform3,
@@ -24,6 +30,7 @@ __all__ = [
     "advanced",
     "angle_difference",
     "wrap_angle",
+    "wrap_angles",
     "largest_stddev",
     "Footprint",
     "DRIVES",

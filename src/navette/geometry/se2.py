@@ -6,7 +6,7 @@ A pose named ``map_T_base`` takes points given in ``base`` to ``map``:
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,11 @@ def wrap_angle(angle: float) -> float:
     """Return the same angle in (−π, π], rad."""
     wrapped = math.remainder(angle, math.tau)
     return math.pi if wrapped == -math.pi else wrapped
+
+
+def wrap_angles(angles: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+    """Return the same angles in [−π, π), rad."""
+    return np.asarray(np.remainder(angles + math.pi, math.tau) - math.pi)
 
 
 def angle_difference(a: float, b: float) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.files.kernels import kernel
-from navette.geometry import ACKERMANN, Footprint, Pose2, advanced
+from navette.geometry import ACKERMANN, Footprint, Pose2, advanced, wrap_angles
 from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import TurnParts
 from navette.navigation.control.follower import (
@@ -407,7 +407,7 @@ def _cusp_made(path: PathWindow, at: int, speed: float) -> int | None:
 def _window(poses: NDArray[np.float64]) -> PathWindow:
     steps = np.diff(poses[:, :2], axis=0)
     metres = np.hypot(steps[:, 0], steps[:, 1])
-    turned = np.abs(np.remainder(np.diff(poses[:, 2]) + np.pi, 2 * np.pi) - np.pi)
+    turned = np.abs(wrap_angles(np.diff(poses[:, 2])))
     spin = np.where(metres < 1e-6, METRES_PER_RADIAN * turned, 0.0)
     measure = np.concatenate([[0.0], np.cumsum(metres + spin)])
     along = steps[:, 0] * np.cos(poses[:-1, 2]) + steps[:, 1] * np.sin(poses[:-1, 2])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import Footprint, Pose2
+from navette.geometry import Footprint, Pose2, wrap_angles
 from navette.navigation.grids import (
     GridSpec,
     ObstacleGrid,
@@ -26,7 +26,6 @@ from navette.navigation.planning.drive_path import (
     DriveMoves,
     DrivePath,
     find_drive_path,
-    wrapped,
 )
 from navette.navigation.planning.pose_flood import HEADING_RAD, HEADINGS, Fit, Masks
 
@@ -183,7 +182,7 @@ class BodySpace:
         local = frame.inverse() @ self._start
         headings = np.arange(HEADINGS)
         if yaw is not None:
-            off = np.abs(wrapped(headings * HEADING_RAD + (self._start.yaw - yaw)))
+            off = np.abs(wrap_angles(headings * HEADING_RAD + (self._start.yaw - yaw)))
             headings = headings[off <= max(tolerance_rad, HEADING_RAD / 2 + 1e-9)]
         turns = self.turns.copy()
         if self._near_start is not None:
@@ -204,7 +203,7 @@ class BodySpace:
         if found.poses is None:
             return found
         xy = frame.apply(found.poses[:, :2])
-        yaws = wrapped(found.poses[:, 2] + frame.yaw)
+        yaws = wrap_angles(found.poses[:, 2] + frame.yaw)
         return DrivePath(np.column_stack([xy, yaws]), found.is_proof)
 
 

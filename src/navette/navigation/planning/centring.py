@@ -8,7 +8,7 @@ has more clearance, and then towards the midpoint of its neighbours; repeatedly.
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import exact_clearances, make_outline
+from navette.navigation.planning.footprint_check import exact_body_clearances
 from navette.navigation.planning.path_shape import Points, Poses, headed
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
@@ -25,7 +25,7 @@ def centred(points: Points, grid: PlanningGrid, body: BodyShape) -> Points:
     enough = grid.margin_m + _ENOUGH_M
     for _ in range(_ROUNDS):
         poses = headed(line)
-        here = _clearances(poses, grid, body, enough)
+        here = exact_body_clearances(poses, grid, body, enough)
         least = here[1:-1].min(initial=enough)
         if least > best_least + 1e-4:
             best, best_least = line.copy(), least
@@ -55,15 +55,8 @@ def _pushed(
     for sign in (1.0, -1.0):
         shifted = poses.copy()
         shifted[:, :2] += sign * side
-        moved.append(_clearances(shifted, grid, body, enough))
+        moved.append(exact_body_clearances(shifted, grid, body, enough))
     left, right = moved
     step = np.where(left > np.maximum(here, right), 1.0, 0.0)
     step = np.where(right > np.maximum(here, left), -1.0, step)
     return np.asarray(poses[:, :2] + step[:, None] * side)
-
-
-def _clearances(
-    poses: Poses, grid: PlanningGrid, body: BodyShape, enough: float
-) -> NDArray[np.float64]:
-    outline = make_outline(body.footprint)
-    return exact_clearances(grid.exact_obstacles, outline, poses, enough)

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Pose2, angle_difference, wrap_angles
 from navette.navigation.grids import exact_clearances, make_outline
 from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Guide, guide_to
 from navette.navigation.planning.footprint_check import check_path
-from navette.navigation.planning.goals import cells_within
+from navette.navigation.planning.goals import cells_near
 from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, HEURISTIC_WEIGHT
 from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.params import PlannerParams
@@ -233,7 +233,7 @@ class DetourPlanner:
         step = self.motions.heading_step
         tight = route[clearance <= clearance.min() + _AS_TIGHT_M, 2]
         # A median: single poses may still turn into the passage.
-        spread = np.remainder(tight - tight[0] + np.pi, 2 * np.pi) - np.pi
+        spread = wrap_angles(tight - tight[0])
         passage = float(tight[0] + np.median(spread))
         off = angle_difference(passage, float(before[-1, 2]))
         off -= step * round(off / step)
@@ -284,7 +284,8 @@ class DetourPlanner:
 
     def _guide(self, target: Target, begin: Pose2, beyond_m: float) -> Guide:
         """Return the cost to go of the cells on good ways from ``begin``."""
-        cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
+        xy = target.x, target.y
+        cells, away = cells_near(self.grid.spec, xy, target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
         # The search multiplies the guide by HEURISTIC_WEIGHT, but not the goal's cost.
         per_metre = STRAIGHT / self.grid.spec.resolution

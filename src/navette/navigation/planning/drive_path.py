@@ -8,12 +8,12 @@ reached.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import ACKERMANN, OMNI, Pose2
+from navette.geometry import ACKERMANN, OMNI, Pose2, wrap_angles
 from navette.navigation.planning.pose_flood import (
     HEADING_RAD,
     HEADINGS,
@@ -136,7 +136,7 @@ def find_drive_path(
         exact = _near(space, begin, ends, steps, met)
     chain = (exact.chains or met.chains)[0]
     path = _replayed(begin[0], chain, steps)
-    yaw = wrapped(start.yaw + path[:, 2] * HEADING_RAD)
+    yaw = wrap_angles(start.yaw + path[:, 2] * HEADING_RAD)
     return DrivePath(np.column_stack([path[:, :2] * size_m, yaw]), is_proof=True)
 
 
@@ -207,8 +207,3 @@ def _replayed(
         poses[i + 1, :2] = poses[i, :2] + shift[k, move]
         poses[i + 1, 2] = after[k, move]
     return poses.astype(np.float64)
-
-
-def wrapped(yaw: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-    """Return angles in [−π, π)."""
-    return np.asarray(np.remainder(yaw + math.pi, math.tau) - math.pi)

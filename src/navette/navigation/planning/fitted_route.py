@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, wrap_angles
 from navette.navigation.planning.footprint_check import check_path, clearances
 from navette.navigation.planning.own_methods import Goal
 from navette.navigation.planning.params import PlannerParams
@@ -72,7 +72,7 @@ class RouteFitter:
     def _is_steerable(self, start: Pose2, route: Poses) -> bool:
         """Return whether an Ackermann drive can follow the route from the start."""
         yaws = np.concatenate([[start.yaw], route[:, 2]])
-        turned = np.abs(np.remainder(np.diff(yaws) + np.pi, 2 * np.pi) - np.pi)
+        turned = np.abs(wrap_angles(np.diff(yaws)))
         driven = np.concatenate([[0.0], lengths(route)])
         radius = self.params.min_turning_radius_m
         return bool(np.all(turned * radius <= driven + _STEERABLE_M))

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.geometry import wrap_angles
 from navette.navigation.grids import (
     body_clearance,
     exact_clearances,
     make_outline,
 )
-from navette.navigation.planning.drive_path import wrapped
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
@@ -47,7 +47,7 @@ def check_path(
     """
     margin = grid.margin_m if margin_m is None else margin_m
     steps = np.diff(poses, axis=0)
-    steps[:, 2] = wrapped(steps[:, 2])
+    steps[:, 2] = wrap_angles(steps[:, 2])
     # A point of the body moves no farther than this from pose to pose.
     motions = np.hypot(steps[:, 0], steps[:, 1])
     motions += body.circumscribed_m * np.abs(steps[:, 2])
@@ -55,12 +55,12 @@ def check_path(
     clearance = clearances(poses, grid, body, enough_m=enough)
     tight = clearance < enough
     if tight.any():
-        clearance[tight] = _exact(poses[tight], grid, body, enough)
+        clearance[tight] = exact_body_clearances(poses[tight], grid, body, enough)
         # On the way from one pose to the next it is at least this.
         lowest = 0.5 * (clearance[:-1] + clearance[1:] - motions)
         before = np.flatnonzero(lowest < margin)
         before, between = _between(before, poses, steps, motions)
-        there = _exact(between, grid, body, margin)
+        there = exact_body_clearances(between, grid, body, margin)
         np.minimum.at(clearance, before + 1, there)
     needed = np.full(len(poses), margin)
     if clearance[0] < margin:
@@ -85,9 +85,10 @@ def _between(
     return before, poses[before] + shares[:, None] * steps[before]
 
 
-def _exact(
+def exact_body_clearances(
     poses: Poses, grid: PlanningGrid, body: BodyShape, horizon_m: float
 ) -> NDArray[np.float64]:
+    """Return (N,) metres between body and obstacles, at most the horizon."""
     outline = make_outline(body.footprint)
     return exact_clearances(grid.exact_obstacles, outline, poses, horizon_m)
 

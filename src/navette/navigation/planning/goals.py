@@ -23,7 +23,7 @@ def nearest_reachable(
 
     The time does not depend on the size of the map.
     """
-    cells, away = cells_within(grid, goal_xy, tolerance_m)
+    cells, away = cells_near(grid.spec, goal_xy, tolerance_m)
     nearest_first = cells[np.argsort(away, kind="stable")]
     best = first_connected(grid.cost, start, nearest_first, grid.table)
     if best is not None:
@@ -34,13 +34,6 @@ def nearest_reachable(
     if (grid.cost[cells[:, 0], cells[:, 1]] == LETHAL).all():
         return None, Outcome.GOAL_BLOCKED
     return None, Outcome.NO_PATH
-
-
-def cells_within(
-    grid: PlanningGrid, xy: tuple[float, float], radius_m: float
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return :func:`cells_near` of a planning grid."""
-    return cells_near(grid.spec, xy, radius_m)
 
 
 def cells_near(

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2
+from navette.geometry import Pose2, wrap_angles
 from navette.navigation.grids import (
     CellWindow,
     DistanceGrid,
@@ -218,5 +218,5 @@ def _retrace(
         steps = motions.offsets[move, : motions.sample_counts[move]]
         pieces.append(np.column_stack([base.apply(steps[:, :2]), yaw + steps[:, 2]]))
     poses = np.concatenate(pieces)
-    poses[:, 2] = np.remainder(poses[:, 2] + np.pi, 2 * np.pi) - np.pi
+    poses[:, 2] = wrap_angles(poses[:, 2])
     return poses

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
-from navette.geometry import Pose2
+from navette.geometry import Pose2, wrap_angles
 from navette.navigation.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
 
@@ -65,8 +65,7 @@ def turn_in_place(
     if long_way:
         turn -= math.copysign(math.tau, turn)
     count = max(1, math.ceil(abs(turn) / TURN_STEP))
-    angles = yaw + turn * np.arange(count + 1) / count
-    angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    angles = wrap_angles(yaw + turn * np.arange(count + 1) / count)
     return np.column_stack([np.full(count + 1, x), np.full(count + 1, y), angles])
 
 
@@ -82,7 +81,7 @@ def bend(start: Pose2, turn: float, length_m: float) -> Poses:
     chord = length_m * share * np.sinc(half / np.pi)
     x = start.x + chord * np.cos(start.yaw + half)
     y = start.y + chord * np.sin(start.yaw + half)
-    yaw = np.remainder(start.yaw + turn * share + np.pi, 2 * np.pi) - np.pi
+    yaw = wrap_angles(start.yaw + turn * share)
     return np.column_stack([x, y, yaw])
 
 
@@ -102,8 +101,7 @@ def lengths(poses: Poses) -> NDArray[np.float64]:
 
 def turns(poses: Poses) -> NDArray[np.float64]:
     """Return (N − 1,) |change of heading| of turns in place, 0 elsewhere."""
-    change = np.diff(poses[:, 2])
-    change = np.abs(np.remainder(change + np.pi, 2 * np.pi) - np.pi)
+    change = np.abs(wrap_angles(np.diff(poses[:, 2])))
     return np.where(lengths(poses) < _SAME_PLACE, change, 0.0)
 
 
@@ -111,9 +109,7 @@ def directions(poses: Poses) -> NDArray[np.int8]:
     """Return (N − 1,) 1 forward, −1 reverse, 0 turning in place."""
     steps = np.diff(poses[:, :2], axis=0)
     # The heading at half of an arc is the direction of its chord.
-    yaw = poses[:-1, 2] + 0.5 * (
-        np.remainder(np.diff(poses[:, 2]) + np.pi, 2 * np.pi) - np.pi
-    )
+    yaw = poses[:-1, 2] + 0.5 * wrap_angles(np.diff(poses[:, 2]))
     ahead = steps[:, 0] * np.cos(yaw) + steps[:, 1] * np.sin(yaw)
     sign = np.where(ahead >= 0, 1, -1).astype(np.int8)
     sign[lengths(poses) < _SAME_PLACE] = 0

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 
+from navette.geometry import wrap_angles
 from navette.navigation.planning.path_shape import (
     Poses,
     directions,
@@ -44,7 +45,7 @@ def smooth_path(
                         spacing_m)  # fmt: skip
         smoothed = headed(line)
         if travel[first] < 0:
-            smoothed[:, 2] = np.remainder(smoothed[:, 2] + 2 * np.pi, 2 * np.pi) - np.pi
+            smoothed[:, 2] = wrap_angles(smoothed[:, 2] + np.pi)
         pieces.append(smoothed)
     whole = joined(*pieces)
     x, y, yaw = whole[-1].tolist()
