@@ -63,6 +63,8 @@ class Executor:
         self._nodes: list[Node] = []
         self._stopping = False
         self._depth = 0  # number of nested spins
+        self._idle = threading.Event()  # no spin runs
+        self._idle.set()
         self._thread = 0  # that spins
         # Raised by a callback of a node here, while another thread drove the loop.
         self._error: CallbackError | SystemExit | None = None
@@ -235,11 +237,15 @@ class Executor:
         return self.loop.create_task(callback, *args, **kwargs)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop, and remove all nodes."""
+        """Stop, remove all nodes, and wait for a spin of another thread to end.
+
+        Returns:
+            False if its callback still runs after the timeout (None: no limit).
+        """
         Executor.stop(self)  # a program's subclass may have a stop() of its own
         for node in tuple(self._nodes):
             self.remove_node(node)
-        return True
+        return self._thread == threading.get_ident() or self._idle.wait(timeout_sec)
 
     def __enter__(self) -> Self:
         return self
@@ -260,6 +266,7 @@ class Executor:
         elif self.loop.in_driver_thread:
             check_wait("spin", in_driver_thread=True, same_group=False, exclusive=False)
         self._depth += 1
+        self._idle.clear()
         outer, self._thread = self._thread, threading.get_ident()
         try:
             while not self._ran(until_ns, done, limit):
@@ -267,6 +274,8 @@ class Executor:
         finally:
             self._depth -= 1
             self._thread = outer
+            if not self._depth:
+                self._idle.set()
 
     def _ran(
         self,

@@ -349,3 +349,25 @@ def test_an_exception_ends_the_spin_of_its_own_node(error: BaseException) -> Non
     assert ends.get(timeout=LIMIT_S) == "stopped"
     thread.join()
     context.shutdown()
+
+
+def test_shutdown_waits_for_a_callback_of_another_thread() -> None:
+    context = Context()
+    executor = SingleThreadedExecutor(context=context)
+    node = Node("n", context=context)
+    executor.add_node(node)
+    begun, may_end = threading.Event(), threading.Event()
+
+    def callback() -> None:
+        begun.set()
+        may_end.wait(LIMIT_S)
+
+    node.create_timer(0.001, callback)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    assert begun.wait(LIMIT_S)
+    assert not executor.shutdown(timeout_sec=0.001)
+    may_end.set()
+    assert executor.shutdown()
+    thread.join()
+    context.shutdown()
