@@ -108,6 +108,22 @@ def test_metadata(bag: Path) -> None:
     assert counts == [5, 5]
 
 
+def test_a_bag_of_sqlite_is_written(tmp_path: Path) -> None:
+    writer = rosbag2_py.SequentialWriter()
+    writer.open(rosbag2_py.StorageOptions(str(tmp_path / "new"), "sqlite3"))
+    writer.create_topic(topic("/chatter"))
+    for second in (1, 2):
+        data = serialize_message(String(data=str(second)))
+        writer.write("/chatter", data, second * 1_000_000_000)
+    del writer
+    metadata = rosbag2_py.Info().read_metadata(str(tmp_path / "new"), "sqlite3")
+    assert metadata.message_count == 2
+    assert metadata.storage_identifier == "sqlite3"
+    with open_bag(tmp_path / "new") as reader:
+        stamps = [m.stamp_ns // 1_000_000_000 for m in reader.messages()]
+    assert stamps == [1, 2]
+
+
 def test_files_are_split(tmp_path: Path) -> None:
     writer = rosbag2_py.SequentialWriter()
     writer.open(options(tmp_path / "split", max_bagfile_duration=2))
@@ -129,8 +145,13 @@ def test_misuse_is_reported(bag: Path, tmp_path: Path) -> None:
         writer.create_topic(topic("/chatter"))
     with pytest.raises(FileFormatError, match="exists already"):
         writer.open(options(bag))
-    with pytest.raises(InvalidValueError, match="storage_id 'sqlite3'"):
-        writer.open(rosbag2_py.StorageOptions(str(tmp_path / "new"), "sqlite3"))
+    with pytest.raises(InvalidValueError, match="storage_id 'rosbag1'"):
+        writer.open(rosbag2_py.StorageOptions(str(tmp_path / "new"), "rosbag1"))
+    split = rosbag2_py.StorageOptions(
+        str(tmp_path / "new"), "sqlite3", max_bagfile_size=1000
+    )
+    with pytest.raises(InvalidValueError, match="'sqlite3' is one file"):
+        writer.open(split)
     writer.open(options(tmp_path / "new"))
     with pytest.raises(RuntimeError, match="'/chatter' has not been created"):
         writer.write("/chatter", b"", 0)

@@ -3,10 +3,10 @@
 import weakref
 from pathlib import Path
 
-from navette.bags import BagTopic
+from navette.bags import BagMessage, BagTopic
 from navette.bags.qos_profiles import offer_of
 from navette.bags.recording import RecordedTopic, SplitFiles
-from navette.bags.writing import completed
+from navette.bags.writing import completed, open_writer
 from navette.errors import InvalidValueError
 from navette.ros2.packages.rosbag2_py._storage import (
     ConverterOptions,
@@ -17,14 +17,32 @@ from navette.ros2.packages.rosbag2_py._storage import (
 _FORMATS = ("", "cdr")
 
 
+class _OneDatabase:
+    """A folder with one SQLite file."""
+
+    def __init__(self, options: StorageOptions) -> None:
+        if options.max_bagfile_size or options.max_bagfile_duration:
+            raise InvalidValueError(
+                "max_bagfile_size, max_bagfile_duration: a bag of storage 'sqlite3' is "
+                "one file; 'mcap' can be split"
+            )
+        self._writer = open_writer(Path(options.uri), storage="sqlite3")
+
+    def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
+        self._writer.write(BagMessage(recorded.topic, stamp_ns, payload))
+
+    def close(self) -> None:
+        self._writer.close()
+
+
 class SequentialWriter:
-    """Writes a folder with ``metadata.yaml`` and MCAP files, as rosbag2 does.
+    """Writes a folder with ``metadata.yaml`` and MCAP or SQLite files, as rosbag2 does.
 
     The bag is complete after :meth:`close`, or when the writer is deleted.
     """
 
     def __init__(self) -> None:
-        self._files: SplitFiles | None = None
+        self._files: SplitFiles | _OneDatabase | None = None
         self._topics: dict[str, RecordedTopic] = {}
 
     def open(
@@ -41,7 +59,7 @@ class SequentialWriter:
         if storage_options.storage_id not in ("", *get_registered_writers()):
             raise InvalidValueError(
                 f"storage_id {storage_options.storage_id!r}: bags are written as "
-                "'mcap'; navette bag convert makes other formats"
+                "'mcap' or 'sqlite3'; navette bag convert makes other formats"
             )
         wanted = (converter_options or ConverterOptions()).output_serialization_format
         if wanted not in _FORMATS:
@@ -49,11 +67,14 @@ class SequentialWriter:
                 f"output_serialization_format {wanted!r}: messages are written as 'cdr'"
             )
         self.close()
-        self._files = SplitFiles(
-            Path(storage_options.uri),
-            max_size=storage_options.max_bagfile_size,
-            max_duration_ns=storage_options.max_bagfile_duration * 1_000_000_000,
-        )
+        if storage_options.storage_id == "sqlite3":
+            self._files = _OneDatabase(storage_options)
+        else:
+            self._files = SplitFiles(
+                Path(storage_options.uri),
+                max_size=storage_options.max_bagfile_size,
+                max_duration_ns=storage_options.max_bagfile_duration * 1_000_000_000,
+            )
         # Programs often end without closing their writer.
         self._close = weakref.finalize(self, self._files.close)
 
@@ -97,7 +118,7 @@ class SequentialWriter:
             self._close()
         self._files, self._topics = None, {}
 
-    def _opened(self) -> SplitFiles:
+    def _opened(self) -> SplitFiles | _OneDatabase:
         if self._files is None:
             raise RuntimeError("Bag is not open. Call open() before writing.")
         return self._files
@@ -109,7 +130,7 @@ class SequentialCompressionWriter(SequentialWriter):
 
 def get_registered_writers() -> set[str]:
     """Return the storages that can be written."""
-    return {"mcap"}
+    return {"mcap", "sqlite3"}
 
 
 def get_registered_compressors() -> set[str]:
