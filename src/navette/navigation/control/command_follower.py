@@ -137,8 +137,8 @@ class CommandFollower(BaseFollower):
         super().set_obstacles(points, half_cell, unseen)
         self._obstacles = points
 
-    def pause(self) -> None:
-        self._last = None
+    def pause(self, last: VelocityCommand | None = None) -> None:
+        self._last = last
         self._restart()
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:

@@ -65,8 +65,8 @@ class Follower(Protocol):
     def set_moving(self, discs: NDArray[np.float64]) -> None:
         """Store moving obstacles (M, 5) x, y, vx, vy, radius; map, now."""
 
-    def pause(self) -> None:
-        """Continue later from the robot's motion then, not from the last command."""
+    def pause(self, last: VelocityCommand | None = None) -> None:
+        """Continue later from another last command; None: the robot's motion then."""
 
     def limit_speed(self, limits: SpeedCap) -> None:
         """Drive no faster than these limits, from the next step on."""

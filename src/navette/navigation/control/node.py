@@ -25,7 +25,7 @@ from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.explanations import Situation
 from navette.navigation.control.follower import BaseFollower
 from navette.navigation.control.followers import make_follower
-from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap
+from navette.navigation.control.limits import NO_CAP, STOP, SpeedCap, VelocityCommand
 from navette.navigation.control.moving_obstacles import counts_as_static
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
@@ -341,9 +341,9 @@ class ControlNode(MotionNode):
             self._on_fault(error)
             return self._follower.step(inputs, dt)
 
-    def _pause_follower(self) -> None:
+    def _pause_follower(self, last: VelocityCommand | None = None) -> None:
         try:
-            self._follower.pause()
+            self._follower.pause(last)
         except MethodFaultError as error:
             self._on_fault(error)
 
@@ -365,7 +365,7 @@ class ControlNode(MotionNode):
             self._commanded, pose, measured, dt, self._delay_s()
         )
         if output.state.moves and (stalls or self._stall.forbids(output.command, pose)):
-            self._pause_follower()
+            self._pause_follower(STOP)
             output = output._replace(command=STOP, state=ControlState.STALLED)
         self._commanded = output.command
         return output

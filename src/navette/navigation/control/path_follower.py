@@ -85,8 +85,8 @@ class PathFollower(BaseFollower):
         self._last, self._clearance = last, clearance
         self._activate(_START_WINDOW_M)
 
-    def pause(self) -> None:
-        self._last = None
+    def pause(self, last: VelocityCommand | None = None) -> None:
+        self._last = last
         self._parts.steering.reset()
 
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:

@@ -139,8 +139,8 @@ class PredictiveFollower(BaseFollower):
         self._rest = None
         self._last, self._clearance = last, clearance
 
-    def pause(self) -> None:
-        self._last = None
+    def pause(self, last: VelocityCommand | None = None) -> None:
+        self._last = last
         self._mode.mppi.reset()
 
     def set_obstacles(
