@@ -60,6 +60,20 @@ def test_info_has_the_layout_of_rosbag_info(sample_bag: Path) -> None:
     assert len({line.index("5 Hz") for line in table.splitlines()[1:]}) == 1
 
 
+@pytest.mark.parametrize(("verb", "rows"), [("info", 3), ("list", 2)])
+def test_rows_on_a_terminal_are_coloured_and_fit(
+    sample_bag: Path, monkeypatch: pytest.MonkeyPatch, verb: str, rows: int
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "40")
+    table = run(verb, sample_bag).stdout.splitlines()[-rows:]
+    assert all(line.startswith("\x1b[36m") for line in table[1:])
+    plain = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in table]
+    assert {len(line) for line in plain} == {40}
+    assert all(line.endswith("…") for line in plain)
+    assert not any("\\x1b" in line for line in plain)
+
+
 def test_the_rate_of_bursts_is_their_mean(tmp_path: Path) -> None:
     writer = open_writer(tmp_path / "a.mcap")
     data = sample(2)[1].data
