@@ -10,6 +10,7 @@ from navette.cli.output import show, show_json
 from navette.cli.service_calls import ServiceRequest, call_all
 from navette.cli.session import connect, fail, service_endpoints
 from navette.errors import FileFormatError
+from navette.files.writing import writing
 
 if TYPE_CHECKING:
     import numpy as np
@@ -130,12 +131,10 @@ def convert(
     if target.exists() and not overwrite:
         raise FileFormatError(target, "exists already; --overwrite replaces it")
     occupancy = read_occupancy_map(file)
-    try:
+    with writing(target):
         written = write_occupancy_map(
             stem, occupancy, mode=mode, image_format=image or ""
         )
-    except OSError as error:
-        fail(f"{target}: cannot be written: {error}")
     show(f"wrote {written}")
 
 

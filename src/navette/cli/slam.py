@@ -12,6 +12,7 @@ from navette.cli.output import show, show_json
 from navette.cli.session import fail
 from navette.cli.stderr import note
 from navette.errors import FileFormatError, InvalidValueError
+from navette.files.writing import writing
 
 if TYPE_CHECKING:
     from navette.geometry import Pose2
@@ -152,15 +153,15 @@ def slam(options: SlamOptions) -> None:
         )
     if run.is_mapping:
         run.refine()
-    try:
-        if output.trajectory is not None:
+    if output.trajectory is not None:
+        with writing(output.trajectory):
             _write_trajectory(output.trajectory, run.trajectory())
-        if output.map_file is not None:
+    if output.map_file is not None:
+        with writing(output.map_file):
             _write_map(output.map_file, run)
-        if output.save is not None:
+    if output.save is not None:
+        with writing(output.save):
             write_graph(output.save, run.graph)
-    except OSError as error:
-        fail(f"cannot be written: {error}")
     _report(options, scans, run, watch.elapsed_s)
 
 

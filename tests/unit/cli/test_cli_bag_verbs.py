@@ -19,6 +19,7 @@ from navette.cli.bag.text import (
     size_text,
     stamp_text,
 )
+from navette.errors import FileFormatError
 
 
 def run(*words: object) -> Result:
@@ -58,6 +59,13 @@ def test_info_has_the_layout_of_rosbag_info(sample_bag: Path) -> None:
         "/point|geometry_msgs/msg/PointStamped|10|5 Hz|200 ms",
     ]
     assert len({line.index("5 Hz") for line in table.splitlines()[1:]}) == 1
+
+
+def test_the_list_of_another_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").touch()
+    refused = run("list", tmp_path / "a.txt")
+    assert isinstance(refused.exception, FileFormatError)
+    assert "neither a folder nor a recording" in str(refused.exception)
 
 
 @pytest.mark.parametrize(("verb", "rows"), [("info", 3), ("list", 2)])

@@ -112,6 +112,15 @@ def test_a_file_is_converted(here: World, file: Path, tmp_path: Path) -> None:
     assert read_description(written).mode == "trinary"
 
 
+def test_a_map_in_a_missing_folder_is_refused(
+    here: World, file: Path, tmp_path: Path
+) -> None:
+    to = tmp_path / "missing" / "m.yaml"
+    failed = here.run("map", "convert", str(file), str(to))
+    reason = "cannot be written: No such file or directory"
+    assert (failed.code, failed.err) == (2, f"navette: {to}: {reason}\n")
+
+
 def test_an_unknown_mode_is_refused(here: World, file: Path, tmp_path: Path) -> None:
     failed = here.run(
         "map", "convert", str(file), str(tmp_path / "x"), "--mode", "grey"

@@ -7,6 +7,7 @@ from click.testing import CliRunner
 
 from navette.cli.app import app
 from navette.cli.arguments import spread_lists
+from navette.errors import FileFormatError
 from navette.ros2.workspace import PackageNotFoundError
 
 
@@ -47,6 +48,12 @@ def test_create_and_find(workspace: Path) -> None:
 def test_create_with_messages_elsewhere(workspace: Path) -> None:
     navette("create", "arm", "--msgs", "--destination-directory", "other")
     assert (workspace / "other" / "arm_msgs" / "msg" / "Average.msg").is_file()
+
+
+def test_a_folder_that_cannot_be_written_is_named(workspace: Path) -> None:
+    (workspace / "file").touch()
+    with pytest.raises(FileFormatError, match="cannot be written: Not a dir"):
+        navette("create", "arm", "--destination-directory", "file")
 
 
 def test_unknown_packages(workspace: Path) -> None:
