@@ -15,7 +15,6 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     split_run,
-    spread_lists,
     without_daemon,
 )
 from navette.cli.commands import LazyGroup
@@ -313,5 +312,5 @@ def _arguments(words: list[str]) -> list[str]:
     """Return the words of the command line as click expects them."""
     run, arguments = split_run(words)
     if arguments[:1] != ["run"]:
-        arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
+        arguments = without_daemon(fill_values(join_pairs(arguments)))
     return [*run, *arguments]

@@ -41,6 +41,27 @@ def test_fields_of_an_option_group_are_options() -> None:
     assert output(*words) == f"{given} True"
 
 
+def test_an_option_of_a_list_takes_several_words() -> None:
+    seen: dict[str, Any] = {}
+
+    def verb(
+        files: Annotated[list[str], Argument()],
+        remap: Annotated[
+            list[str] | None, Option("-m", "--remap", takes_words=True)
+        ] = None,
+        only: Annotated[list[str] | None, Option("--only")] = None,
+    ) -> None:
+        seen.update(files=files, remap=remap, only=only)
+
+    command = AnnotatedCommand("verb", callback=verb)
+    typed = "a -m b:=c d:=e --only f g --remap h:=i"
+    assert CliRunner().invoke(command, typed.split()).exit_code == 0
+    expected = {"files": ["a", "g"], "remap": ["b:=c", "d:=e", "h:=i"], "only": ["f"]}
+    assert seen == expected
+    empty = CliRunner().invoke(command, ["a", "--remap"])
+    assert "'--remap' requires an argument" in empty.output
+
+
 def test_values_are_checked_and_options_are_listed() -> None:
     assert "Missing argument" in output()
     assert "Invalid value for '--times'" in output("anna", "--times", "0")

@@ -35,6 +35,7 @@ TopicTypes = Annotated[
     Option(
         "--topic-types",
         metavar="TYPE...",
+        takes_words=True,
         help="Record topics of these types.",
         complete=complete_messages,
     ),
@@ -54,6 +55,7 @@ ExcludeTopics = Annotated[
     Option(
         "--exclude-topics",
         metavar="TOPIC...",
+        takes_words=True,
         help="Omit these topics.",
         complete=complete_topics,
     ),
@@ -63,6 +65,7 @@ ExcludeTypes = Annotated[
     Option(
         "--exclude-topic-types",
         metavar="TYPE...",
+        takes_words=True,
         help="Omit topics of these types.",
         complete=complete_messages,
     ),
