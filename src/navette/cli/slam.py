@@ -7,10 +7,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import click
+
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
-from navette.cli.session import fail
-from navette.cli.stderr import note
+from navette.cli.session import FAILED, fail
+from navette.cli.stderr import note, print_error
 from navette.errors import FileFormatError, InvalidValueError
 from navette.files.writing import writing
 
@@ -119,6 +121,7 @@ def slam(options: SlamOptions) -> None:
     """Build a map from a recording: scans and odometry in, map and trajectory out.
 
     Runs as fast as the machine allows. The same recording gives the same files.
+    Damaged parts are left out; the exit code is then 1.
     """
     from navette.bags import open_bag
     from navette.navigation.slam.graph_file import write_graph
@@ -136,13 +139,15 @@ def slam(options: SlamOptions) -> None:
             odom_frame=params.odom_frame,
             base_frame=params.base_frame,
         )
-        damage: list[str] = []
+        damage = list(reader.losses)
         scans = RecordedScans(
             reader, source, on_damage=lambda each: damage.append(str(each))
         )
         run = _slam(options, params)
         used = _add_all(run, scans)
-    for problem in (*damage, *scans.problems):
+    for problem in damage:
+        print_error(f"damaged: {problem}")
+    for problem in scans.problems:
         note(f"left out: {problem}")
     if not used:
         fail(f"{options.source.bag}: none of the {scans.count} scans can be used")
@@ -163,6 +168,8 @@ def slam(options: SlamOptions) -> None:
         with writing(output.save):
             write_graph(output.save, run.graph)
     _report(options, scans, run, watch.elapsed_s)
+    if damage:
+        raise click.exceptions.Exit(FAILED)
 
 
 def _slam(options: SlamOptions, params: "SlamParams") -> "Slam":
