@@ -19,7 +19,7 @@ from navette.cli.bag.text import (
     size_text,
     stamp_text,
 )
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, InvalidValueError
 
 
 def run(*words: object) -> Result:
@@ -157,6 +157,30 @@ def test_check_and_recover(sample_bag: Path, tmp_path: Path) -> None:
     assert "damaged: the summary cannot be read" in result.output
     assert run("check", saved, "--decode").exit_code == 0
     assert numbers(saved) == list(range(20))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "filter --start 100",
+        "cut --start 1.5 --end 0.5",
+        "cut --start 100 --duration 2",
+        "cut --end -5",
+        "cut --start 0.5 --duration -1",
+    ],
+)
+def test_a_time_without_messages_is_refused(
+    sample_bag: Path, tmp_path: Path, words: str
+) -> None:
+    verb, *options = words.split()
+    refused = run(verb, sample_bag, *options, "-o", tmp_path / "b.mcap")
+    assert isinstance(refused.exception, InvalidValueError)
+    reason = (
+        "more than 0 seconds" if options[-1] == "-1" else "which is from 0 to 1.900 s"
+    )
+    assert f"{options[-2]} {options[-1]}: " in str(refused.exception)
+    assert reason in str(refused.exception)
+    assert not (tmp_path / "b.mcap").exists()
 
 
 def test_convert_filter_cut_merge(sample_bag: Path, tmp_path: Path) -> None:
