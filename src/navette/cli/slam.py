@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
+from navette.cli.map_stem import map_stem
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED, fail
@@ -216,13 +217,10 @@ def _check_files(options: SlamOptions) -> None:
 
 
 def _map_file(given: Path | None) -> Path | None:
-    return (
-        None if given is None else _stem(given).with_name(f"{_stem(given).name}.yaml")
-    )
-
-
-def _stem(given: Path) -> Path:
-    return given.with_suffix("") if given.suffix in (".yaml", ".pgm") else given
+    if given is None:
+        return None
+    stem = map_stem(given)
+    return stem.with_name(f"{stem.name}.yaml")
 
 
 def _params(options: SlamOptions) -> "SlamParams":
@@ -272,7 +270,8 @@ def _write_map(path: Path, run: "Slam") -> None:
     from navette.geometry.map_files import OccupancyMap, write_occupancy_map
 
     cells, spec = run.occupancy()
-    write_occupancy_map(_stem(path), OccupancyMap(cells, spec.resolution, spec.origin))
+    occupancy = OccupancyMap(cells, spec.resolution, spec.origin)
+    write_occupancy_map(map_stem(path), occupancy)
 
 
 def _report(

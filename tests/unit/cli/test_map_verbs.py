@@ -75,6 +75,12 @@ def test_the_map_of_slam_is_saved_first(here: World, tmp_path: Path) -> None:
     assert printed == f"saved {other}.yaml\n"
 
 
+def test_a_map_without_a_name_is_refused(here: World, file: Path) -> None:
+    for words in (["save", ""], ["save", "."], ["convert", str(file), "."]):
+        refused = here.run("map", *words)
+        assert (refused.code, "name the map" in refused.err) == (2, True), words
+
+
 def test_saving_without_a_robot_fails(here: World, tmp_path: Path) -> None:
     failed = here.run("map", "save", str(tmp_path / "x"))
     assert failed.code == 1
