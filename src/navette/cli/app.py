@@ -177,7 +177,13 @@ Json = Annotated[
 def app(
     domain_id: Annotated[
         int | None,
-        Option(min=0, max=232, metavar="N", help="Domain instead of ROS_DOMAIN_ID."),
+        Option(
+            min=0,
+            max=232,
+            metavar="N",
+            help="Domain instead of ROS_DOMAIN_ID.",
+            variable="ROS_DOMAIN_ID",
+        ),
     ] = None,
     run: Annotated[
         str | None,

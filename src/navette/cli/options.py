@@ -41,6 +41,7 @@ class Option:
     """An option. Without ``flags`` its name is that of the Python parameter.
 
     Args:
+        variable: environment variable with the value, if the option is not given.
         takes_words: ``--topics a b`` are two values, as in ROS 2's command; click takes
             one value per option.
     """
@@ -54,6 +55,7 @@ class Option:
         max: float | None = None,
         complete: Completer | None = None,
         panel: str = "Options",
+        variable: str | None = None,
         takes_words: bool = False,
     ) -> None:
         self.flags = flags
@@ -63,6 +65,7 @@ class Option:
         self.max = max
         self.complete = complete
         self.panel = panel
+        self.variable = variable
         self.takes_words = takes_words
 
 
@@ -141,6 +144,8 @@ def _click_parameter(parameter: inspect.Parameter) -> click.Parameter:
     return PanelOption(
         [parameter.name, *flags],
         panel=declaration.panel,
+        envvar=declaration.variable,
+        show_envvar=declaration.variable is not None,  # in errors
         takes_words=declaration.takes_words,
         multiple=is_list,
         is_flag=True if kind is bool else None,  # False: the value is optional

@@ -73,7 +73,8 @@ File = Annotated[
     ),
 ]
 Timeout = Annotated[
-    float, Option(metavar="S", help="How long to wait for readiness, in seconds.")
+    float,
+    Option(metavar="S", min=0, help="How long to wait for readiness, in seconds."),
 ]
 Watch = Annotated[
     bool,
