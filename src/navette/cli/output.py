@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import shutil
 import sys
 import textwrap
@@ -11,6 +10,7 @@ from typing import Any
 
 import click
 
+from navette.cli.colours import colours_wanted
 from navette.cli.stderr import filled
 from navette.files.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
 
@@ -25,7 +25,7 @@ def is_terminal() -> bool:
 
 def styled(text: str, **style: Any) -> str:
     """Style a text with the arguments of ``click.style``, on a terminal only."""
-    if not is_terminal() or "NO_COLOR" in os.environ:
+    if not is_terminal() or not colours_wanted():
         return text
     return click.style(text, **style)
 

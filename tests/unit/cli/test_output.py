@@ -7,7 +7,7 @@ from typing import Any
 import click
 import pytest
 
-from navette.cli.output import beside, hanging, json_text
+from navette.cli.output import beside, hanging, json_text, styled
 from navette.cli.session import fail
 from navette.cli.stderr import note
 from navette.cli.topic.echo_options import Style
@@ -98,6 +98,15 @@ def test_long_text_is_printed_below_the_name(
         "/long_name\n    pkg/msg/Longer",
         "/b",
     ]
+
+
+def test_a_dumb_terminal_gets_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("navette.cli.output.is_terminal", lambda: True)
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    assert styled("a", bold=True) == "\x1b[1ma\x1b[0m"
+    monkeypatch.setenv("TERM", "dumb")
+    assert styled("a", bold=True) == "a"
 
 
 def test_lines_are_wrapped_at_words_on_a_terminal_only(
