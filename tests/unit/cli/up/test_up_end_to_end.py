@@ -87,6 +87,16 @@ def holder(pipe: Pipe, text: str = "holding") -> str:
     return json.dumps({"command": words, "name": "hold"})
 
 
+@pytest.mark.usefixtures("bench")
+def test_ps_names_the_network_whose_robots_are_not_listed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    assert "shared network" not in navette("ps").output
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert "robots on the shared network" in navette("ps").output
+
+
 def test_from_up_to_down(bench: Any) -> None:
     pipe = Pipe(bench.folder / "pipe")
     bench.write(
