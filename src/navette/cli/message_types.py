@@ -118,7 +118,10 @@ def if_unknown(name: str) -> str:
 
 
 def near_types(name: str) -> str:
-    """Suggest types of the same package, or of a similar name in other packages."""
+    """Suggest types of the same package, or the same name in other packages.
+
+    For a name without a package, types of similar names are suggested as well.
+    """
     *rest, last = name.split("/")
     every = (
         (package, f"{package}/{kind}/{each}")
@@ -129,7 +132,7 @@ def near_types(name: str) -> str:
     if rest and rest[0] in msgs.packages():
         return did_you_mean(name, (full for of, full in every if of == rest[0]))
     full_names = [full for _, full in every]
-    similar = nearest(last, (full.rpartition("/")[2] for full in full_names))
+    similar = [] if rest else nearest(last, (f.rpartition("/")[2] for f in full_names))
     for each in (last, *similar):
         same = f"/{each}".lower()
         found = [full for full in full_names if full.lower().endswith(same)]
