@@ -13,7 +13,12 @@ from navette.bags.message_types import Decoder
 from navette.bags.opening import open_bag
 from navette.bags.topic_writer import TopicWriter, UnsupportedTopicError
 from navette.bags.writing import completed
-from navette.errors import FileFormatError, InvalidValueError
+from navette.errors import (
+    FileFormatError,
+    InvalidValueError,
+    UnknownNameError,
+    join_names,
+)
 from navette.msgs.expressions import Expression, ExpressionError
 
 Progress = Callable[[int], None]
@@ -37,6 +42,28 @@ class MessageFilter:
     expression: str = ""
     """Python expression over ``topic`` (name), ``t`` (s), ``m`` (message)."""
 
+    def choose(self, topics: Sequence[BagTopic]) -> list[BagTopic]:
+        """Return the selected topics of a recording.
+
+        Raises:
+            UnknownNameError: a named topic or type was not recorded.
+            InvalidValueError: no topic is selected.
+        """
+        names = sorted({each.name for each in topics})
+        for name in self.topics:
+            if name not in names:
+                raise UnknownNameError.of("topic", name, names)
+        types = sorted({each.type_name for each in topics})
+        for name in self.types:
+            if name not in {*types, *map(_short, types)}:
+                raise UnknownNameError.of("type", name, types)
+        chosen = [each for each in topics if self.takes(each)]
+        if topics and not chosen:
+            raise InvalidValueError(
+                f"no topic is selected; recorded topics: {join_names(names, most=100)}"
+            )
+        return chosen
+
     def takes(self, topic: BagTopic) -> bool:
         if self.exclude and _search(self.exclude, topic.name):
             return False
@@ -45,9 +72,14 @@ class MessageFilter:
         return (
             topic.name in self.topics
             or topic.type_name in self.types
-            or topic.type_name.replace("/msg/", "/") in self.types
+            or _short(topic.type_name) in self.types
             or (bool(self.regex) and _search(self.regex, topic.name))
         )
+
+
+def _short(type_name: str) -> str:
+    """Return the name of a type as in ROS 1: ``std_msgs/String``."""
+    return type_name.replace("/msg/", "/")
 
 
 def _search(pattern: str, text: str) -> bool:
@@ -129,18 +161,27 @@ def copy(
 
     Raises:
         FileFormatError: a part cannot be read (without ``on_damage``) or written.
-        InvalidValueError: a pattern or an expression is wrong.
+        InvalidValueError: a pattern or an expression is wrong, or no message is
+            selected.
+        UnknownNameError: a selected topic or type was not recorded.
     """
     selected = selected or MessageFilter()
     try:
         _copy_extras(reader, writer, on_damage)
         for message in _chosen(reader, writer, selected, on_message, on_damage):
             writer.write(message)
+        if selected != MessageFilter():
+            _refuse_nothing(writer)
     except BaseException:
         writer.abandon()
         raise
     writer.close()
     return writer.message_count
+
+
+def _refuse_nothing(writer: TopicWriter) -> None:
+    if writer.message_count == 0 and not writer.losses.lines:
+        raise InvalidValueError(f"no message is selected; {writer.path} is not written")
 
 
 def _copy_extras(
@@ -174,7 +215,7 @@ def _chosen(
     on_damage: OnDamage | None,
 ) -> Iterator[RecordedMessage]:
     expression = _Condition(selected.expression) if selected.expression else None
-    topics = [topic for topic in reader.topics if selected.takes(topic)]
+    topics = selected.choose(reader.topics)
     if writer.keeps_encoding:
         topics = [topic.as_recorded for topic in topics]
     taken = {topic: completed(topic) for topic in topics}

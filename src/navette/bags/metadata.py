@@ -11,6 +11,7 @@ from navette.bags.bag import BagTopic
 from navette.bags.qos import qos_text
 
 VERSION = 8
+_DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
 @dataclass
@@ -78,7 +79,9 @@ def write_metadata(
         OSError: the disk is full.
     """
     found = information(files, topics, storage=storage, compression=compression)
-    text = yaml.safe_dump({"rosbag2_bagfile_information": found}, sort_keys=False)
+    text = yaml.dump(
+        {"rosbag2_bagfile_information": found}, Dumper=_DUMPER, sort_keys=False
+    )
     part = folder / ".metadata.yaml.part"
     part.write_text(text, "utf-8")
     part.replace(folder / "metadata.yaml")

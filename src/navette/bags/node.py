@@ -39,6 +39,7 @@ from navette.runtime.qos import (
 )
 from navette.runtime.ros_clock import Clock
 from navette.runtime.stage.stage_node import StageNode
+from navette.runtime.subscription import Subscription
 from navette.runtime.time import ClockType
 from navette.runtime.timer import Timer
 
@@ -67,7 +68,8 @@ class RecorderNode(StageNode):
         overwrite: replace an existing bag that no other process records.
 
     Raises:
-        FileFormatError: the file cannot be created; names path and reason.
+        FileFormatError: the file cannot be created, or has another suffix; names path
+            and reason.
     """
 
     PARAMS: ClassVar[type[Params]] = RecorderParams
@@ -102,6 +104,7 @@ class RecorderNode(StageNode):
             self.destroy_node()
             raise
         self._recorded: set[tuple[str, str]] = set()
+        self._queues: list[tuple[Subscription[Any], RecordedTopic]] = []
         #: Selected topics whose type is not defined yet.
         self.undefined: dict[str, str] = {}
         self.message_count = 0
@@ -177,7 +180,7 @@ class RecorderNode(StageNode):
         recorded = RecordedTopic(
             BagTopic(topic, type_name, definition, type_hash(type_name))
         )
-        self.create_subscription(
+        subscription: Subscription[Any] = self.create_subscription(
             message_type,
             topic,
             partial(self._record, recorded),
@@ -186,6 +189,7 @@ class RecorderNode(StageNode):
             shared=True,
             other_types=[each for each in all_types if each != type_name],
         )
+        self._queues.append((subscription, recorded))
 
     def _announce(self, recorded: RecordedTopic) -> None:
         """Register a topic at its first message, when its publishers' QoS is known."""
@@ -215,6 +219,15 @@ class RecorderNode(StageNode):
             self._recording.write(recorded, self._clock.now_ns, payload)
         except (OSError, FileFormatError) as error:
             self._end_early(error)
+
+    def record_queued(self) -> None:
+        """Record what was received but waits for its callback: the end of a recording.
+
+        A recorder that is slower than the publishers would lose it unseen.
+        """
+        for subscription, recorded in self._queues:
+            while (taken := subscription.take_with_info(raw=True)) is not None:
+                self._record(recorded, taken[0])
 
     def _waits_for_clock(self, recorded: RecordedTopic, payload: bytes) -> bool:
         """Store a message received before the first simulated time, without a stamp."""
@@ -308,6 +321,12 @@ def _open(path: Path, params: RecorderParams, *, overwrite: bool) -> Recording:
             compression=params.compression,
             max_size=params.max_bag_size_bytes,
             max_duration_ns=round(params.max_bag_duration_s * 1e9),
+        )
+    if path.suffix != ".mcap":
+        raise FileFormatError(
+            path,
+            "a recording is MCAP: use a name that ends in .mcap; navette bag convert "
+            "writes other formats",
         )
     return SingleFile(path, compression=params.compression, overwrite=overwrite)
 

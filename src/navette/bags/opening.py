@@ -146,8 +146,13 @@ def _open_folder(folder: Path) -> BagReader:
     files = [each for each in folder.iterdir() if each.is_file() and is_bag(each)]
     names = metadata.files or tuple(sorted(each.name for each in files))
     if not names:
+        has_metadata = (folder / METADATA).exists()
+        reason = "; ".join(problems) or "metadata.yaml lists no files"
         raise FileFormatError(
-            folder, "is not a recording: it has neither metadata.yaml nor bag files"
+            folder,
+            f"is not a recording: {reason}"
+            if has_metadata
+            else "is not a recording: it has neither metadata.yaml nor bag files",
         )
     with ExitStack() as stack:
         readers: list[BagReader] = []

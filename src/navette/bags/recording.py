@@ -114,6 +114,7 @@ class SplitFiles:
         self._max_duration_ns = max_duration_ns
         self._folder = Folder(path, compression=compression)
         self._file = self._folder.next_file()
+        self._has_new_file = False
         self._is_closed = False
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
@@ -121,7 +122,7 @@ class SplitFiles:
         if self._is_full(stamp_ns, len(payload)):
             self._file.close()
             self._file = self._folder.next_file()
-            self._folder.write_metadata()
+            self._has_new_file = True
         self._file.write(recorded, stamp_ns, payload)
         self._folder.note(recorded)
 
@@ -137,6 +138,11 @@ class SplitFiles:
     def flush(self) -> None:
         """Flush, so that written messages survive the end of this process."""
         self._file.flush()
+        # Not for each file: it names all of them, so that many small files would take
+        # ever more time, in which the messages pile up.
+        if self._has_new_file:
+            self._has_new_file = False
+            self._folder.write_metadata()
 
     def close(self) -> None:
         """Finish the last file and the metadata; a second call has no effect."""

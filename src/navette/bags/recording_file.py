@@ -16,6 +16,7 @@ from pathlib import Path
 
 from navette.bags.mcap_records import MAGIC
 from navette.errors import FileFormatError
+from navette.files.writing import writing
 
 _ATTEMPTS = 10
 _CANNOT_LOCK = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)
@@ -37,7 +38,7 @@ class RecordingFile:
         self.path = path
         # The file a symbolic link refers to is replaced, not the link.
         self._target = Path(os.path.realpath(path))
-        try:
+        with writing(path):
             _refuse_existing(path, overwrite=overwrite)
             part = self._target.with_name(f".{self._target.name}.part")
             self.raw = _create_locked(path, part)
@@ -50,9 +51,6 @@ class RecordingFile:
                     part.unlink()
                 self.raw.close()
                 raise
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise FileFormatError(path, f"cannot be written: {reason}") from error
 
     def check(self, size: int) -> None:
         """Raise if the name refers to another file or to none, or the file is shorter.

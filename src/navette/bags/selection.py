@@ -3,7 +3,8 @@
 import re
 from dataclasses import dataclass
 
-from navette.errors import ParameterError
+from navette.errors import InvalidNameError, ParameterError
+from navette.msgs.registry import full_name
 
 IMAGE_TYPE = "sensor_msgs/msg/Image"
 
@@ -29,6 +30,9 @@ class TopicSelection:
     hidden: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("types", "exclude_types"):
+            for type_name in getattr(self, name):
+                _check_type(name, type_name)
         for name in ("regex", "exclude"):
             pattern = getattr(self, name)
             try:
@@ -58,3 +62,10 @@ class TopicSelection:
         if self.topics or self.types:
             return False
         return self.hidden or "/_" not in topic
+
+
+def _check_type(parameter: str, type_name: str) -> None:
+    try:
+        full_name(type_name)
+    except InvalidNameError as error:
+        raise ParameterError(f"parameter {parameter!r}: {error}") from None

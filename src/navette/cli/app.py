@@ -15,7 +15,6 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     split_run,
-    spread_lists,
     without_daemon,
 )
 from navette.cli.commands import LazyGroup
@@ -30,6 +29,7 @@ from navette.cli.ending import end_with
 from navette.cli.methods import MethodOptions
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
+from navette.cli.streams import prepare, reporting_failed_writes
 from navette.cli.verbs import DRIVE, VERBS
 from navette.cli.view_options import DEFAULT_VIEW, ViewOptions
 from navette.errors import NavetteError
@@ -177,7 +177,13 @@ Json = Annotated[
 def app(
     domain_id: Annotated[
         int | None,
-        Option(min=0, max=232, metavar="N", help="Domain instead of ROS_DOMAIN_ID."),
+        Option(
+            min=0,
+            max=232,
+            metavar="N",
+            help="Domain instead of ROS_DOMAIN_ID.",
+            variable="ROS_DOMAIN_ID",
+        ),
     ] = None,
     run: Annotated[
         str | None,
@@ -296,14 +302,21 @@ def main() -> None:
     """Entry point of the ``navette`` command."""
     if is_completing():
         discard_stderr()
+    prepare()
     try:
-        run, arguments = split_run(sys.argv[1:])
-        if arguments[:1] != ["run"]:
-            arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
-        app.main(args=[*run, *arguments], prog_name="navette")
+        with reporting_failed_writes():
+            app.main(args=_arguments(sys.argv[1:]), prog_name="navette")
     except NavetteError as error:
         print_error(str(error))
         raise SystemExit(USAGE_ERROR) from None
     except SystemExit as end:
         end_with(end.code)
         raise
+
+
+def _arguments(words: list[str]) -> list[str]:
+    """Return the words of the command line as click expects them."""
+    run, arguments = split_run(words)
+    if arguments[:1] != ["run"]:
+        arguments = without_daemon(fill_values(join_pairs(arguments)))
+    return [*run, *arguments]

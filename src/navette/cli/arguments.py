@@ -1,18 +1,12 @@
 """Preprocess command-line arguments, and parse goals and speeds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 from navette.errors import InvalidValueError
 
 PAIR_OPTIONS = ("--goal",)
-LIST_OPTIONS = (
-    *("--dependencies", "--topics", "--remap"),
-    *("--topic-types", "--exclude-topics", "--exclude-topic-types"),
-    *("--param-prefixes", "--prefixes"),
-    "--compare",
-)
 _DAEMON_VERBS = (
     "topic",
     "node",
@@ -108,19 +102,16 @@ def without_daemon(arguments: Sequence[str]) -> list[str]:
     return kept
 
 
-def spread_lists(arguments: Sequence[str]) -> list[str]:
-    """Expand ``--dependencies a b`` to ``--dependencies a --dependencies b``.
-
-    ROS 2's command takes lists; click takes one value per option.
-    """
+def spread_lists(arguments: Sequence[str], options: Collection[str]) -> list[str]:
+    """Expand ``--topics a b`` to ``--topics a --topics b`` for these options."""
     spread: list[str] = []
     option = ""
     for word in arguments:
         if word.startswith("-"):
-            option = word if word in LIST_OPTIONS else ""
-            spread += [] if option else [word]
-        else:
-            spread += [option, word] if option else [word]
+            option = word if word in options else ""
+        elif option and spread[-1] != option:
+            spread.append(option)
+        spread.append(word)
     return spread
 
 

@@ -89,6 +89,7 @@ class BenchOptions:
         Option(
             "--compare",
             metavar="BASELINE [MINE]",
+            takes_words=True,
             help="Compare two: baseline (the robot's own methods), mine (those of the"
             " options), settings as controller=mppi,control.cruise_speed_mps=1.5, or a"
             " file of --results. Exit with 1 if success or score of mine are"

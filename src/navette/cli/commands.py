@@ -6,9 +6,10 @@ from typing import Any
 
 import click
 
+from navette.cli.arguments import spread_lists
 from navette.cli.gc_tuning import collect
 from navette.cli.interruption import INTERRUPTED, raise_at_interrupt
-from navette.cli.options import call_arguments, click_parameters
+from navette.cli.options import PanelOption, call_arguments, click_parameters
 
 Verb = Callable[..., Any]
 """The function of a command, with annotated parameters."""
@@ -43,6 +44,15 @@ class AnnotatedCommand(click.Command):
         super().__init__(name, callback=callback, params=params, **attributes)
         self.panel = panel
         self.imports_in_call = imports_in_call
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        lists = {
+            flag
+            for each in self.params
+            if isinstance(each, PanelOption) and each.takes_words
+            for flag in each.opts
+        }
+        return super().parse_args(ctx, spread_lists(args, lists))
 
     def get_help(self, ctx: click.Context) -> str:
         from navette.cli.help_page import help_page

@@ -23,6 +23,7 @@ from navette.cli.app import (
     World,
 )
 from navette.cli.arguments import parse_speed
+from navette.cli.bag.text import counted
 from navette.cli.hanging_indent import print_beside
 from navette.cli.methods import MethodOptions
 from navette.cli.options import Option
@@ -128,12 +129,10 @@ class _Screen:
             ("done", "bold green") if report.succeeded else ("ended", "bold yellow")
         )
         reason = _REASONS.get(report.reason, report.reason)
-        touched = (
-            "" if contacts is None else f", {contacts} contact{'s'[: contacts != 1]}"
-        )
+        touched = "" if contacts is None else f", {counted(contacts, 'contact')}"
         text = (
             f"{reason}; {report.coverage:.1%} of the boundary known, "
-            f"{report.free_m2:.0f} m² free, {report.goals} goals, "
+            f"{report.free_m2:.0f} m² free, {counted(report.goals, 'goal')}, "
             f"{report.path_length_m:.0f} m driven in {report.time_s:.0f} s{touched}"
         )
         print_beside(self.console, Text(f"{word}: ", style), Text(text))

@@ -5,11 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from navette.cli.commands import Group
+from navette.cli.map_stem import map_stem
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.service_calls import ServiceRequest, call_all
 from navette.cli.session import connect, fail, service_endpoints
 from navette.errors import FileFormatError
+from navette.files.writing import writing
 
 if TYPE_CHECKING:
     import numpy as np
@@ -60,7 +62,7 @@ def save(
     The node that keeps the map writes the files, on its machine. With SLAM that is
     its map, and FILE.slam to continue it.
     """
-    stem = file.with_suffix("") if file.suffix == ".yaml" else file
+    stem = map_stem(file)
     with connect() as node:
         service = _saver(node, topic)
         if service is None:
@@ -125,17 +127,15 @@ def convert(
     """Write a map file in another mode or image format."""
     from navette.geometry.map_files import read_occupancy_map, write_occupancy_map
 
-    stem = to.with_suffix("") if to.suffix == ".yaml" else to
+    stem = map_stem(to)
     target = stem.with_name(f"{stem.name}.yaml")
     if target.exists() and not overwrite:
         raise FileFormatError(target, "exists already; --overwrite replaces it")
     occupancy = read_occupancy_map(file)
-    try:
+    with writing(target):
         written = write_occupancy_map(
             stem, occupancy, mode=mode, image_format=image or ""
         )
-    except OSError as error:
-        fail(f"{target}: cannot be written: {error}")
     show(f"wrote {written}")
 
 

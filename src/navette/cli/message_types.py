@@ -3,7 +3,7 @@
 from typing import Any
 
 from navette import msgs
-from navette.cli.nearest import did_you_mean
+from navette.cli.nearest import did_you_mean, nearest
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import endpoints, fail, wait_for
 from navette.cli.stderr import note
@@ -118,7 +118,10 @@ def if_unknown(name: str) -> str:
 
 
 def near_types(name: str) -> str:
-    """Suggest types of the same package, or the same name in other packages."""
+    """Suggest types of the same package, or the same name in other packages.
+
+    For a name without a package, types of similar names are suggested as well.
+    """
     *rest, last = name.split("/")
     every = (
         (package, f"{package}/{kind}/{each}")
@@ -128,8 +131,14 @@ def near_types(name: str) -> str:
     )
     if rest and rest[0] in msgs.packages():
         return did_you_mean(name, (full for of, full in every if of == rest[0]))
-    same = f"/{last}".lower()
-    return did_you_mean(f"/{last}", (f for _, f in every if f.lower().endswith(same)))
+    full_names = [full for _, full in every]
+    similar = [] if rest else nearest(last, (f.rpartition("/")[2] for f in full_names))
+    for each in (last, *similar):
+        same = f"/{each}".lower()
+        found = [full for full in full_names if full.lower().endswith(same)]
+        if found:
+            return did_you_mean(f"/{each}", found)
+    return ""
 
 
 def _check_type(topic: str, given: str, found: list[Endpoint]) -> None:

@@ -38,7 +38,13 @@ class Argument:
 
 
 class Option:
-    """An option. Without ``flags`` its name is that of the Python parameter."""
+    """An option. Without ``flags`` its name is that of the Python parameter.
+
+    Args:
+        variable: environment variable with the value, if the option is not given.
+        takes_words: ``--topics a b`` are two values, as in ROS 2's command; click takes
+            one value per option.
+    """
 
     def __init__(
         self,
@@ -49,6 +55,8 @@ class Option:
         max: float | None = None,
         complete: Completer | None = None,
         panel: str = "Options",
+        variable: str | None = None,
+        takes_words: bool = False,
     ) -> None:
         self.flags = flags
         self.help = help
@@ -57,6 +65,8 @@ class Option:
         self.max = max
         self.complete = complete
         self.panel = panel
+        self.variable = variable
+        self.takes_words = takes_words
 
 
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
@@ -73,9 +83,12 @@ Stdin = Annotated[bool, Option("--stdin", help="Read the YAML from standard inpu
 class PanelOption(click.Option):
     """An option that the help page lists under a heading of its own."""
 
-    def __init__(self, *args: Any, panel: str, **attributes: Any) -> None:
+    def __init__(
+        self, *args: Any, panel: str, takes_words: bool = False, **attributes: Any
+    ) -> None:
         super().__init__(*args, **attributes)
         self.panel = panel
+        self.takes_words = takes_words
 
 
 def click_parameters(function: Callable[..., Any]) -> Iterator[click.Parameter]:
@@ -131,6 +144,9 @@ def _click_parameter(parameter: inspect.Parameter) -> click.Parameter:
     return PanelOption(
         [parameter.name, *flags],
         panel=declaration.panel,
+        envvar=declaration.variable,
+        show_envvar=declaration.variable is not None,  # in errors
+        takes_words=declaration.takes_words,
         multiple=is_list,
         is_flag=True if kind is bool else None,  # False: the value is optional
         show_default=kind is not bool and parameter.default not in (None, ""),

@@ -2,17 +2,15 @@
 
 import json
 import math
-import os
 import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import click
 
-from navette.cli.session import fail
+from navette.cli.colours import colours_wanted
 from navette.cli.stderr import filled
 from navette.files.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
 
@@ -27,7 +25,7 @@ def is_terminal() -> bool:
 
 def styled(text: str, **style: Any) -> str:
     """Style a text with the arguments of ``click.style``, on a terminal only."""
-    if not is_terminal() or "NO_COLOR" in os.environ:
+    if not is_terminal() or not colours_wanted():
         return text
     return click.style(text, **style)
 
@@ -63,10 +61,7 @@ def harmless(text: str) -> str:
 
 
 def show(text: str = "") -> None:
-    """Print lines and flush them; on a terminal, only colours act on it.
-
-    The command fails if they cannot be written; a broken pipe raises.
-    """
+    """Print lines and flush them; on a terminal, only colours act on it."""
     _write(_harmless_but_coloured(text))
 
 
@@ -93,14 +88,8 @@ def _harmless_but_coloured(text: str) -> str:
 
 
 def _write(text: str) -> None:
-    try:
-        sys.stdout.write(text + "\n")
-        sys.stdout.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115 - for the flush at exit
-        fail(f"cannot write to standard output: {error.strerror}")
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
 
 
 def show_json(value: Any) -> None:

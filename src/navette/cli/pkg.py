@@ -84,7 +84,7 @@ class CreateOptions:
     about: AboutOptions
     dependencies: Annotated[
         list[str] | None,
-        Option(metavar="PACKAGE...", help="Additional dependencies."),
+        Option(metavar="PACKAGE...", help="Additional dependencies.", takes_words=True),
     ] = None
     destination_directory: Annotated[
         Path | None,

@@ -7,11 +7,15 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import click
+
+from navette.cli.map_stem import map_stem
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
-from navette.cli.session import fail
-from navette.cli.stderr import note
+from navette.cli.session import FAILED, fail
+from navette.cli.stderr import note, print_error
 from navette.errors import FileFormatError, InvalidValueError
+from navette.files.writing import writing
 
 if TYPE_CHECKING:
     from navette.geometry import Pose2
@@ -118,6 +122,7 @@ def slam(options: SlamOptions) -> None:
     """Build a map from a recording: scans and odometry in, map and trajectory out.
 
     Runs as fast as the machine allows. The same recording gives the same files.
+    Damaged parts are left out; the exit code is then 1.
     """
     from navette.bags import open_bag
     from navette.navigation.slam.graph_file import write_graph
@@ -135,13 +140,15 @@ def slam(options: SlamOptions) -> None:
             odom_frame=params.odom_frame,
             base_frame=params.base_frame,
         )
-        damage: list[str] = []
+        damage = list(reader.losses)
         scans = RecordedScans(
             reader, source, on_damage=lambda each: damage.append(str(each))
         )
         run = _slam(options, params)
         used = _add_all(run, scans)
-    for problem in (*damage, *scans.problems):
+    for problem in damage:
+        print_error(f"damaged: {problem}")
+    for problem in scans.problems:
         note(f"left out: {problem}")
     if not used:
         fail(f"{options.source.bag}: none of the {scans.count} scans can be used")
@@ -152,16 +159,18 @@ def slam(options: SlamOptions) -> None:
         )
     if run.is_mapping:
         run.refine()
-    try:
-        if output.trajectory is not None:
+    if output.trajectory is not None:
+        with writing(output.trajectory):
             _write_trajectory(output.trajectory, run.trajectory())
-        if output.map_file is not None:
+    if output.map_file is not None:
+        with writing(output.map_file):
             _write_map(output.map_file, run)
-        if output.save is not None:
+    if output.save is not None:
+        with writing(output.save):
             write_graph(output.save, run.graph)
-    except OSError as error:
-        fail(f"cannot be written: {error}")
     _report(options, scans, run, watch.elapsed_s)
+    if damage:
+        raise click.exceptions.Exit(FAILED)
 
 
 def _slam(options: SlamOptions, params: "SlamParams") -> "Slam":
@@ -208,13 +217,10 @@ def _check_files(options: SlamOptions) -> None:
 
 
 def _map_file(given: Path | None) -> Path | None:
-    return (
-        None if given is None else _stem(given).with_name(f"{_stem(given).name}.yaml")
-    )
-
-
-def _stem(given: Path) -> Path:
-    return given.with_suffix("") if given.suffix in (".yaml", ".pgm") else given
+    if given is None:
+        return None
+    stem = map_stem(given)
+    return stem.with_name(f"{stem.name}.yaml")
 
 
 def _params(options: SlamOptions) -> "SlamParams":
@@ -264,7 +270,8 @@ def _write_map(path: Path, run: "Slam") -> None:
     from navette.geometry.map_files import OccupancyMap, write_occupancy_map
 
     cells, spec = run.occupancy()
-    write_occupancy_map(_stem(path), OccupancyMap(cells, spec.resolution, spec.origin))
+    occupancy = OccupancyMap(cells, spec.resolution, spec.origin)
+    write_occupancy_map(map_stem(path), occupancy)
 
 
 def _report(

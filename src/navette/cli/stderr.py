@@ -1,12 +1,12 @@
 """Notes and error messages on standard error."""
 
-import os
 import shutil
 import sys
 from typing import Any
 
 import click
 
+from navette.cli.colours import colours_wanted
 from navette.files import terminal_lines
 from navette.files.untrusted.escaping import escaped
 
@@ -25,7 +25,7 @@ def _print(text: str, **style: Any) -> None:
     text = escaped(text)
     if sys.stderr.isatty():
         text = "\n".join(map(filled, text.split("\n")))
-        if "NO_COLOR" not in os.environ:
+        if colours_wanted():
             text = click.style(text, **style)
     sys.stderr.write(f"{text}\n")
     sys.stderr.flush()

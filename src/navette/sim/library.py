@@ -14,6 +14,8 @@ from navette.errors import (
     ParameterError,
     UnknownNameError,
 )
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
 from navette.files.untrusted.yaml_input import load_yaml
 from navette.params.plugins import load_attribute
 from navette.sim.mjcf import read_mjcf
@@ -187,7 +189,7 @@ def _topic_names(path: Path) -> dict[str, str]:
     if not path.is_file():
         return {}
     try:
-        names = load_yaml(path.read_text(encoding="utf-8"))
+        names = load_yaml(read_bounded(path, DOCUMENT))
     except yaml.YAMLError as error:
         raise FileFormatError(path, f"not YAML: {error}") from None
     if not isinstance(names, dict) or not all(

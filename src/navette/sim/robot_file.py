@@ -9,6 +9,8 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError, ParameterError
+from navette.files.untrusted.budget import DOCUMENT
+from navette.files.untrusted.files import read_bounded
 from navette.files.untrusted.yaml_input import load_yaml
 from navette.geometry import Transform3
 from navette.params import Params, param
@@ -96,7 +98,7 @@ def read_robot_file(path: Path) -> RobotFile:
         FileFormatError: not such a file; names the key, its value and what is allowed.
     """
     try:
-        content = load_yaml(path.read_text(encoding="utf-8"))
+        content = load_yaml(read_bounded(path, DOCUMENT))
     except yaml.YAMLError as error:
         raise FileFormatError(path, f"not YAML: {error}") from None
     if not isinstance(content, dict):

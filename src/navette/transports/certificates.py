@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from navette.errors import InvalidValueError, MissingPartError
+from navette.files.writing import writing
 
 try:
     from cryptography import x509
@@ -40,6 +41,7 @@ def create_keys(
 
     Raises:
         InvalidValueError: a name is invalid or has keys already.
+        FileFormatError: the folder cannot be written.
     """
     for name in names:
         if not _NAME.fullmatch(name):
@@ -48,8 +50,9 @@ def create_keys(
             )
         if (folder / name).exists():
             raise InvalidValueError(f"{folder / name} exists already")
-    authority = _Authority.of(folder, now, days)
-    return [authority.issue(name, now, days) for name in names]
+    with writing(folder):
+        authority = _Authority.of(folder, now, days)
+        return [authority.issue(name, now, days) for name in names]
 
 
 class _Authority:

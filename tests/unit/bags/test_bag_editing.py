@@ -10,7 +10,7 @@ from navette.bags.checking import Severity, check_bag
 from navette.bags.editing import MessageFilter, copy, join
 from navette.bags.message_types import Decoder
 from navette.bags.writing import open_writer
-from navette.errors import FileFormatError, InvalidValueError
+from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
 from navette.msgs import serialize
 from navette.msgs.sensor_msgs.msg import CameraInfo, LaserScan
 
@@ -70,6 +70,9 @@ def test_a_part_of_a_recording(tmp_path: Path) -> None:
         (MessageFilter(regex="["), "is not a regular expression"),
         (MessageFilter(expression="m +"), "expression 'm \\+'"),
         (MessageFilter(expression="m.nothing"), "/chatter at .*'nothing' of String"),
+        (MessageFilter(regex="nosuch"), "no topic is selected; .*: /chatter, /point"),
+        (MessageFilter(expression="t < 0"), "no message is selected"),
+        (MessageFilter(start_ns=START_NS + 1, end_ns=START_NS + 2), "no message is"),
     ],
 )
 @pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])
@@ -79,6 +82,22 @@ def test_invalid_filters_leave_no_file(
     bag = write_sample(tmp_path / "a.mcap")
     with pytest.raises(InvalidValueError, match=reason):
         made_of(bag, tmp_path / name, choice)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.mcap"]
+
+
+@pytest.mark.parametrize(
+    ("choice", "reason"),
+    [
+        (MessageFilter(topics=("/point", "/no")), "topic '/no'; known: /chatter, /po"),
+        (MessageFilter(types=("a/msg/B",)), "type 'a/msg/B'; known: geometry_msgs"),
+    ],
+)
+def test_names_that_were_not_recorded_are_refused(
+    tmp_path: Path, choice: MessageFilter, reason: str
+) -> None:
+    bag = write_sample(tmp_path / "a.mcap")
+    with pytest.raises(UnknownNameError, match=reason):
+        made_of(bag, tmp_path / "b.mcap", choice)
     assert [each.name for each in tmp_path.iterdir()] == ["a.mcap"]
 
 

@@ -481,3 +481,19 @@ def test_invalid_metadata(tmp_path: Path, text: str) -> None:
             assert len(list(reader.messages())) == 6
     except FileFormatError as error:
         assert "a.mcap: cannot be opened" in str(error)  # noqa: PT017 - either is correct
+
+
+@pytest.mark.parametrize(
+    ("metadata", "reason"),
+    [
+        ("a: [", "metadata.yaml:2: is not YAML"),
+        (None, "it has neither metadata.yaml nor bag files"),
+    ],
+)
+def test_a_folder_without_files_names_the_reason(
+    tmp_path: Path, metadata: str | None, reason: str
+) -> None:
+    if metadata is not None:
+        (tmp_path / "metadata.yaml").write_text(f"{metadata}\n", encoding="utf-8")
+    with pytest.raises(FileFormatError, match=reason):
+        open_bag(tmp_path)

@@ -138,8 +138,8 @@ def test_messages_older_than_half_a_second_are_on_disk(tmp_path: Path) -> None:
 def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
     runs = {"a": 1, "b": 1, "other seed": 2}
     for name, seed in runs.items():
-        Run(tmp_path / name, seed=seed).go(5).end()
-    a, b, other = ((tmp_path / name).read_bytes() for name in runs)
+        Run(tmp_path / f"{name}.mcap", seed=seed).go(5).end()
+    a, b, other = ((tmp_path / f"{name}.mcap").read_bytes() for name in runs)
     assert a == b
     assert a != other
 
@@ -168,6 +168,16 @@ def test_a_file_that_cannot_be_created_leaves_no_node(tmp_path: Path) -> None:
         RecorderNode(tmp_path / "no" / "a.mcap", context=context)
     assert context.nodes == []
     context.shutdown()
+
+
+def test_a_name_of_another_format_is_refused(tmp_path: Path) -> None:
+    for name in ("run.db3", "run"):
+        with (
+            Context(clock=VirtualClock()) as context,
+            pytest.raises(FileFormatError, match=r"name that ends in \.mcap"),
+        ):
+            RecorderNode(tmp_path / name, context=context)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_refused_parameter_creates_no_file(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from rosbags.highlevel import AnyReader
 
 from navette.bags import BagTopic, OfferedQos, open_bag
 from navette.bags.node import RecorderNode
-from navette.bags.recording import RecordedTopic, Snapshots
+from navette.bags.recording import Folder, RecordedTopic, Snapshots
 from navette.errors import FileFormatError
 from navette.msgs import register_definition
 from navette.msgs.builtin_interfaces.msg import Time
@@ -90,6 +90,35 @@ def test_files_split_by_size(tmp_path: Path) -> None:
     files = sorted(path.glob("*.mcap"))
     assert len(files) > 2
     assert chatter(path) == list(range(1, 1001))
+
+
+def test_many_small_files_do_not_write_their_list_each_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[int] = []
+    write = Folder.write_metadata
+
+    def counted(folder: Folder) -> None:
+        written.append(len(folder.files))
+        write(folder)
+
+    monkeypatch.setattr(Folder, "write_metadata", counted)
+    path = tmp_path / "run"
+    Run(path, max_bag_size_bytes=1, flush_period_s=0.5).go(2.2).end()
+    assert len(list(path.glob("*.mcap"))) > 200
+    assert len(written) == 5, "at each flush, and at the end"
+    assert written[-1] == len(list(path.glob("*.mcap")))
+    assert chatter(path) == list(range(1, 221))
+
+
+def test_what_is_queued_at_the_end_is_recorded(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    run = Run(path, topics=["/chatter"]).go(0.1)
+    for number in range(11, 61):
+        run.publisher.publish(String(data=str(number)))
+    run.recorder.record_queued()
+    run.end()
+    assert chatter(path) == list(range(1, 61))
 
 
 def test_an_existing_folder_is_not_replaced(tmp_path: Path) -> None:

@@ -8,7 +8,6 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     split_run,
-    spread_lists,
     without_daemon,
 )
 from navette.errors import InvalidValueError
@@ -82,7 +81,7 @@ def test_the_error_of_a_malformed_speed_lists_what_is_allowed(text: str) -> None
 
 
 def test_no_words_at_all() -> None:
-    assert fill_values(spread_lists(join_pairs([]))) == []
+    assert fill_values(join_pairs([])) == []
 
 
 def test_the_run_is_chosen_before_or_after_the_verb() -> None:

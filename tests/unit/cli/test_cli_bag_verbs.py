@@ -19,6 +19,7 @@ from navette.cli.bag.text import (
     size_text,
     stamp_text,
 )
+from navette.errors import FileFormatError, InvalidValueError
 
 
 def run(*words: object) -> Result:
@@ -58,6 +59,27 @@ def test_info_has_the_layout_of_rosbag_info(sample_bag: Path) -> None:
         "/point|geometry_msgs/msg/PointStamped|10|5 Hz|200 ms",
     ]
     assert len({line.index("5 Hz") for line in table.splitlines()[1:]}) == 1
+
+
+def test_the_list_of_another_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").touch()
+    refused = run("list", tmp_path / "a.txt")
+    assert isinstance(refused.exception, FileFormatError)
+    assert "neither a folder nor a recording" in str(refused.exception)
+
+
+@pytest.mark.parametrize(("verb", "rows"), [("info", 3), ("list", 2)])
+def test_rows_on_a_terminal_are_coloured_and_fit(
+    sample_bag: Path, monkeypatch: pytest.MonkeyPatch, verb: str, rows: int
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "40")
+    table = run(verb, sample_bag).stdout.splitlines()[-rows:]
+    assert all(line.startswith("\x1b[36m") for line in table[1:])
+    plain = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in table]
+    assert {len(line) for line in plain} == {40}
+    assert all(line.endswith("…") for line in plain)
+    assert not any("\\x1b" in line for line in plain)
 
 
 def test_the_rate_of_bursts_is_their_mean(tmp_path: Path) -> None:
@@ -135,6 +157,30 @@ def test_check_and_recover(sample_bag: Path, tmp_path: Path) -> None:
     assert "damaged: the summary cannot be read" in result.output
     assert run("check", saved, "--decode").exit_code == 0
     assert numbers(saved) == list(range(20))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "filter --start 100",
+        "cut --start 1.5 --end 0.5",
+        "cut --start 100 --duration 2",
+        "cut --end -5",
+        "cut --start 0.5 --duration -1",
+    ],
+)
+def test_a_time_without_messages_is_refused(
+    sample_bag: Path, tmp_path: Path, words: str
+) -> None:
+    verb, *options = words.split()
+    refused = run(verb, sample_bag, *options, "-o", tmp_path / "b.mcap")
+    assert isinstance(refused.exception, InvalidValueError)
+    reason = (
+        "more than 0 seconds" if options[-1] == "-1" else "which is from 0 to 1.900 s"
+    )
+    assert f"{options[-2]} {options[-1]}: " in str(refused.exception)
+    assert reason in str(refused.exception)
+    assert not (tmp_path / "b.mcap").exists()
 
 
 def test_convert_filter_cut_merge(sample_bag: Path, tmp_path: Path) -> None:

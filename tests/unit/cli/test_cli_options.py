@@ -41,6 +41,44 @@ def test_fields_of_an_option_group_are_options() -> None:
     assert output(*words) == f"{given} True"
 
 
+def test_an_option_of_a_list_takes_several_words() -> None:
+    seen: dict[str, Any] = {}
+
+    def verb(
+        files: Annotated[list[str], Argument()],
+        remap: Annotated[
+            list[str] | None, Option("-m", "--remap", takes_words=True)
+        ] = None,
+        only: Annotated[list[str] | None, Option("--only")] = None,
+    ) -> None:
+        seen.update(files=files, remap=remap, only=only)
+
+    command = AnnotatedCommand("verb", callback=verb)
+    typed = "a -m b:=c d:=e --only f g --remap h:=i"
+    assert CliRunner().invoke(command, typed.split()).exit_code == 0
+    expected = {"files": ["a", "g"], "remap": ["b:=c", "d:=e", "h:=i"], "only": ["f"]}
+    assert seen == expected
+    empty = CliRunner().invoke(command, ["a", "--remap"])
+    assert "'--remap' requires an argument" in empty.output
+
+
+def test_a_variable_is_checked_as_the_option_is() -> None:
+    def verb(
+        domain: Annotated[int, Option("--domain", max=232, variable="DOMAIN")] = 0,
+    ) -> None:
+        click.echo(domain)
+
+    command = AnnotatedCommand("verb", callback=verb)
+    for variable, words, expected in (
+        ("7", [], "7\n"),
+        ("7", ["--domain", "8"], "8\n"),
+        ("", [], "0\n"),
+        ("300", [], "(env var: 'DOMAIN'): 300 is not in the range"),
+    ):
+        done = CliRunner().invoke(command, words, env={"DOMAIN": variable})
+        assert expected in done.output
+
+
 def test_values_are_checked_and_options_are_listed() -> None:
     assert "Missing argument" in output()
     assert "Invalid value for '--times'" in output("anna", "--times", "0")

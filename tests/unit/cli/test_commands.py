@@ -99,6 +99,13 @@ def test_numbers_are_checked() -> None:
         assert "Invalid value" in shown.stderr
 
 
+@pytest.mark.parametrize("verb", ["up", "restart"])
+def test_a_negative_timeout_is_refused(verb: str) -> None:
+    refused = navette(verb, "robot", "--timeout", "-1")
+    assert refused.exit_code == 2
+    assert "-1.0 is not in the range x>=0" in refused.output
+
+
 def test_flags_have_no_metavar() -> None:
     for words in (["topic", "echo", "--help"], ["--help"]):
         assert "BOOLEAN" not in navette(*words).stdout

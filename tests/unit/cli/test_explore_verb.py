@@ -3,10 +3,13 @@
 import json
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from navette.bags import open_bag
 from navette.cli.app import app
+from navette.cli.explore import _Screen
+from navette.navigation.missions.explore.node import ExplorationReport
 
 PLANNER = """
 def plan(grid, start, goal):
@@ -28,6 +31,12 @@ def test_methods_parameters_and_generated_worlds_are_taken(tmp_path: Path) -> No
         assert "/lidar" in {each.name for each in bag.topics}
     report = json.loads(ended.stdout[ended.stdout.index("{") :])
     assert report["goals"] >= 1
+
+
+def test_one_goal_is_not_in_the_plural(capsys: pytest.CaptureFixture[str]) -> None:
+    _Screen().on_end(ExplorationReport(goals=1), contacts=1)
+    words = " ".join(capsys.readouterr().err.split())
+    assert words.endswith("1 goal, 0 m driven in 0 s, 1 contact")
 
 
 def test_methods_of_a_running_robot_are_refused() -> None:

@@ -130,7 +130,7 @@ def test_an_unknown_type_fails(verb: str) -> None:
 def test_an_unknown_type_suggests_similar_names() -> None:
     shown = navette("interface", "show", "std_msgs/msg/Strin")
     assert "did you mean std_msgs/msg/String" in shown.stderr
-    for name in ("Twist", "geometry_msg/msg/Twist", "geometry_msgs/Twst"):
+    for name in ("Twist", "Twst", "geometry_msg/msg/Twist", "geometry_msgs/Twst"):
         shown = navette("interface", "show", name)
         assert shown.exit_code == 1
         assert "did you mean geometry_msgs/msg/Twist?" in shown.stderr

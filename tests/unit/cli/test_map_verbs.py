@@ -75,6 +75,12 @@ def test_the_map_of_slam_is_saved_first(here: World, tmp_path: Path) -> None:
     assert printed == f"saved {other}.yaml\n"
 
 
+def test_a_map_without_a_name_is_refused(here: World, file: Path) -> None:
+    for words in (["save", ""], ["save", "."], ["convert", str(file), "."]):
+        refused = here.run("map", *words)
+        assert (refused.code, "name the map" in refused.err) == (2, True), words
+
+
 def test_saving_without_a_robot_fails(here: World, tmp_path: Path) -> None:
     failed = here.run("map", "save", str(tmp_path / "x"))
     assert failed.code == 1
@@ -110,6 +116,15 @@ def test_a_file_is_converted(here: World, file: Path, tmp_path: Path) -> None:
     assert (again.code, "--overwrite replaces it" in again.err) == (2, True)
     here.read("map", "convert", str(file), str(to), "--overwrite", "--image", "png")
     assert read_description(written).mode == "trinary"
+
+
+def test_a_map_in_a_missing_folder_is_refused(
+    here: World, file: Path, tmp_path: Path
+) -> None:
+    to = tmp_path / "missing" / "m.yaml"
+    failed = here.run("map", "convert", str(file), str(to))
+    reason = "cannot be written: No such file or directory"
+    assert (failed.code, failed.err) == (2, f"navette: {to}: {reason}\n")
 
 
 def test_an_unknown_mode_is_refused(here: World, file: Path, tmp_path: Path) -> None:

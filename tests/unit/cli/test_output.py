@@ -1,15 +1,13 @@
 """What verbs print: strict JSON, harmless texts, columns that fit the terminal."""
 
-import errno
 import json
 import math
-import sys
 from typing import Any
 
 import click
 import pytest
 
-from navette.cli.output import beside, hanging, json_text, show
+from navette.cli.output import beside, hanging, json_text, styled
 from navette.cli.session import fail
 from navette.cli.stderr import note
 from navette.cli.topic.echo_options import Style
@@ -102,33 +100,13 @@ def test_long_text_is_printed_below_the_name(
     ]
 
 
-def test_a_full_disk_is_reported_in_a_line(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    class Full:
-        def write(self, text: str) -> None:
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-        def isatty(self) -> bool:
-            return False
-
-    monkeypatch.setattr("sys.stdout", Full())
-    with pytest.raises(click.exceptions.Exit) as ended:
-        show("x")
-    sys.stdout.close()  # what is left goes to os.devnull
-    assert ended.value.exit_code == 1
-    expected = "navette: cannot write to standard output: No space left on device\n"
-    assert capsys.readouterr().err == expected
-
-
-def test_a_closed_pipe_is_not_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Closed:
-        def write(self, text: str) -> None:
-            raise BrokenPipeError
-
-    monkeypatch.setattr("sys.stdout", Closed())
-    with pytest.raises(BrokenPipeError):
-        show("x")
+def test_a_dumb_terminal_gets_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("navette.cli.output.is_terminal", lambda: True)
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    assert styled("a", bold=True) == "\x1b[1ma\x1b[0m"
+    monkeypatch.setenv("TERM", "dumb")
+    assert styled("a", bold=True) == "a"
 
 
 def test_lines_are_wrapped_at_words_on_a_terminal_only(

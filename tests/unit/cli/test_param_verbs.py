@@ -182,6 +182,18 @@ def _for_node(file: Path, node: str) -> Path:
     return renamed
 
 
+def test_dump_into_a_file_instead_of_a_folder_is_refused(
+    here: World, driver: Node, tmp_path: Path
+) -> None:
+    file = tmp_path / "driver.yaml"
+    file.write_text("kept", encoding="utf-8")
+    refused = here.run("param", "dump", "-o", str(file))
+    assert (refused.code, "expected a folder" in refused.err) == (2, True)
+    below = here.run("param", "dump", "-o", str(file / "folder"))
+    assert (below.code, "cannot be written: Not a dir" in below.err) == (2, True)
+    assert file.read_text(encoding="utf-8") == "kept"
+
+
 def test_dump_of_all_nodes_is_one_file(here: World, driver: Node) -> None:
     here.graph.add(Node("other", context=here.context))
     patterns = [name for name, _ in parse_parameters(here.read("param", "dump"))]

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from navette.cli.app import app
-from navette.cli.arguments import spread_lists
+from navette.errors import FileFormatError
 from navette.ros2.workspace import PackageNotFoundError
 
 
@@ -20,7 +20,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def navette(*words: str) -> str:
-    done = CliRunner().invoke(app, ["pkg", *spread_lists(words)])
+    done = CliRunner().invoke(app, ["pkg", *words])
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
     assert done.exit_code == 0, done.output
@@ -49,12 +49,12 @@ def test_create_with_messages_elsewhere(workspace: Path) -> None:
     assert (workspace / "other" / "arm_msgs" / "msg" / "Average.msg").is_file()
 
 
+def test_a_folder_that_cannot_be_written_is_named(workspace: Path) -> None:
+    (workspace / "file").touch()
+    with pytest.raises(FileFormatError, match="cannot be written: Not a dir"):
+        navette("create", "arm", "--destination-directory", "file")
+
+
 def test_unknown_packages(workspace: Path) -> None:
     with pytest.raises(PackageNotFoundError, match="'nowhere' not found"):
         navette("prefix", "nowhere")
-
-
-def test_lists_of_words_are_spread() -> None:
-    assert spread_lists(["a", "--dependencies", "b", "c", "--msgs", "d"]) == [
-        *("a", "--dependencies", "b", "--dependencies", "c", "--msgs", "d")
-    ]

@@ -58,6 +58,17 @@ def test_a_map_and_a_trajectory_are_written(bag: Path, tmp_path: Path) -> None:
     assert 16.0 <= width * 0.05 < 18.0
 
 
+def test_damage_is_reported_and_the_rest_is_used(bag: Path, tmp_path: Path) -> None:
+    damaged, lines = tmp_path / "damaged.mcap", tmp_path / "office.tum"
+    data = bag.read_bytes()
+    damaged.write_bytes(data[: len(data) * 3 // 4])
+    done = run(damaged, "--trajectory", lines)
+    assert done.code == 1
+    assert "damaged: " in done.err
+    assert "wrote" in done.out
+    assert lines.is_file()
+
+
 def test_the_same_recording_gives_the_same_files(bag: Path, tmp_path: Path) -> None:
     for name in ("one", "two"):
         stem = tmp_path / name

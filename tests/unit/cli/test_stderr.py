@@ -38,5 +38,9 @@ def test_colours(
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
     print_error("no")
     assert capsys.readouterr().err == "\x1b[31mnavette: no\x1b[0m\n"
+    monkeypatch.setenv("TERM", "dumb")
+    print_error("no")
+    assert capsys.readouterr().err == "navette: no\n"

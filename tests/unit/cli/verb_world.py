@@ -10,7 +10,6 @@ from unittest.mock import patch
 from click.testing import CliRunner
 
 from navette.cli.app import app
-from navette.cli.arguments import spread_lists
 from navette.cli.session import connect
 from navette.errors import NavetteError
 from navette.runtime.testing import GraphHarness
@@ -56,7 +55,7 @@ class World:
 
     def run(self, *words: str, stdin: str = "") -> Done:
         """``navette …`` with these words."""
-        done = CliRunner().invoke(app, spread_lists(words), input=stdin)
+        done = CliRunner().invoke(app, list(words), input=stdin)
         if isinstance(done.exception, NavetteError):
             return Done(done.stdout, f"navette: {done.exception}\n", 2)
         if done.exception and not isinstance(done.exception, SystemExit):

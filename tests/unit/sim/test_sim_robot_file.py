@@ -16,6 +16,14 @@ def written(folder: Path, text: str, name: str = "cart.yaml") -> Path:
     return path
 
 
+@pytest.mark.parametrize("name", ["cart.yaml", "names.yaml"])
+def test_a_file_that_is_not_text_is_refused(tmp_path: Path, name: str) -> None:
+    cart = written(tmp_path, "{}")
+    (tmp_path / name).write_bytes(b"\x89PNG\xff\x00")
+    with pytest.raises(FileFormatError, match=rf"{name}: not YAML"):
+        load_robot(cart)
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from navette.cli.bag.series import Series
-from navette.errors import FileFormatError, InvalidValueError, MissingPartError
+from navette.errors import InvalidValueError, MissingPartError
+from navette.files.writing import writing
 
 SUFFIXES = (".png", ".svg", ".pdf")
 # The live view's colours, distinguishable without colour vision.
@@ -67,11 +68,8 @@ def draw(series: Sequence[Series], title: str, path: Path) -> None:
             ".svg": {"Date": None},
             ".pdf": {"CreationDate": None},
         }[path.suffix]
-        try:
+        with writing(path):
             figure.savefig(path, metadata=metadata)
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise FileFormatError(path, f"cannot be written: {reason}") from error
 
 
 def _paint_panels(figure: Any, series: Sequence[Series]) -> None:

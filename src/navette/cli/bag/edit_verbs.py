@@ -1,5 +1,6 @@
 """``navette bag recover``, ``convert``, ``filter``, ``cut`` and ``merge``."""
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +21,7 @@ from navette.cli.bag.options import (
 from navette.cli.options import Option
 from navette.cli.session import FAILED
 from navette.cli.stderr import note
+from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from navette.bags import BagReader, Damage
@@ -81,13 +83,14 @@ def filter_(
     from navette.bags.editing import MessageFilter
 
     with open_bag(bag) as reader:
+        first, last = _span(reader, start, end)
         selection = MessageFilter(
             topics=tuple(topic or ()),
             types=tuple(type_ or ()),
             regex=regex,
             exclude=exclude,
-            start_ns=_time(start, reader),
-            end_ns=_time(end, reader),
+            start_ns=first,
+            end_ns=last,
             expression=where,
         )
         _copy(reader, target, selection)
@@ -107,11 +110,7 @@ def cut(
     if end and duration is not None:
         raise click.UsageError("--end and --duration cannot be combined")
     with open_bag(bag) as reader:
-        first = _time(start, reader)
-        last = _time(end, reader)
-        if duration is not None:
-            begin = first if first is not None else reader.start_ns
-            last = begin + round(duration * 1e9)
+        first, last = _span(reader, start, end, duration)
         _copy(reader, target, MessageFilter(start_ns=first, end_ns=last))
 
 
@@ -165,6 +164,35 @@ def _copy(
         note(f"not kept: {loss}")
     note(f"{output}: {counted(count, 'message')}{suffix}")
     return count
+
+
+def _span(
+    reader: "BagReader", start: str, end: str, duration_s: float | None = None
+) -> tuple[int | None, int | None]:
+    """Return the first and last stamp of the options; None for the recording's own.
+
+    Raises:
+        InvalidValueError: no time of the recording is selected.
+    """
+    first, last = _time(start, reader), _time(end, reader)
+    begin = reader.start_ns if first is None else first
+    if duration_s is not None:
+        if not 0 < duration_s < math.inf:
+            raise InvalidValueError(
+                f"--duration {duration_s:g}: expected more than 0 seconds, finite"
+            )
+        last = begin + round(duration_s * 1e9)
+    final = reader.end_ns if last is None else last
+    if begin > min(final, reader.end_ns) or final < reader.start_ns:
+        duration = "" if duration_s is None else f"{duration_s:g}"
+        given = {"--start": start, "--end": end, "--duration": duration}
+        words = " ".join(f"{name} {value}" for name, value in given.items() if value)
+        raise InvalidValueError(
+            f"{words}: no time of the recording, which is from 0 to "
+            f"{(reader.end_ns - reader.start_ns) / 1e9:.3f} s ("
+            f"{reader.start_ns / 1e9:.3f} to {reader.end_ns / 1e9:.3f} since 1970)"
+        )
+    return first, last
 
 
 def _time(text: str, reader: "BagReader") -> int | None:

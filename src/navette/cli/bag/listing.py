@@ -43,10 +43,12 @@ def find(folder: Path, *, recursive: bool = False) -> list[BagListing]:
     """Return all recordings in a folder (or the folder itself), sorted by name.
 
     Raises:
-        FileFormatError: the folder does not exist.
+        FileFormatError: the folder does not exist, or is another file.
     """
     if not folder.exists():
         raise FileFormatError(folder, "no such folder")
+    if not folder.is_dir() and not is_bag(folder):
+        raise FileFormatError(folder, "neither a folder nor a recording")
     return [_summary(path) for path in sorted(_bags(folder, recursive=recursive))]
 
 

@@ -44,7 +44,12 @@ Length = Annotated[
 ]
 Topics = Annotated[
     list[str] | None,
-    Option("--topics", metavar="TOPIC...", help="Play only these topics."),
+    Option(
+        "--topics",
+        metavar="TOPIC...",
+        help="Play only these topics.",
+        takes_words=True,
+    ),
 ]
 Regex = Annotated[
     str,
@@ -56,7 +61,13 @@ Exclude = Annotated[
 ]
 Remap = Annotated[
     list[str] | None,
-    Option("-m", "--remap", metavar="FROM:=TO...", help="Rename topics."),
+    Option(
+        "-m",
+        "--remap",
+        metavar="FROM:=TO...",
+        help="Rename topics.",
+        takes_words=True,
+    ),
 ]
 Clock = Annotated[
     float | None,

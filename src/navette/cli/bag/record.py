@@ -1,6 +1,7 @@
 """``navette bag record``: record topics to a file."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,7 @@ from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.bags.node import RecorderNode
+    from navette.bags.selection import TopicSelection
     from navette.runtime import Node
 
 TopicNames = Annotated[
@@ -35,6 +37,7 @@ TopicTypes = Annotated[
     Option(
         "--topic-types",
         metavar="TYPE...",
+        takes_words=True,
         help="Record topics of these types.",
         complete=complete_messages,
     ),
@@ -54,6 +57,7 @@ ExcludeTopics = Annotated[
     Option(
         "--exclude-topics",
         metavar="TOPIC...",
+        takes_words=True,
         help="Omit these topics.",
         complete=complete_topics,
     ),
@@ -63,6 +67,7 @@ ExcludeTypes = Annotated[
     Option(
         "--exclude-topic-types",
         metavar="TYPE...",
+        takes_words=True,
         help="Omit topics of these types.",
         complete=complete_messages,
     ),
@@ -138,8 +143,11 @@ def record(
     Topics that appear later are included. Keys: space pauses and resumes, s writes a
     snapshot, q quits.
     """
+    from navette.msgs.registry import full_name
+
     if not (topics or all_ or regex or topic_types):
         raise click.UsageError("give topics, --all, --regex or --topic-types")
+    selection = _selection(topics or (), regex, topic_types or (), all_=all_)
     patterns = [exclude] if exclude else []
     patterns += [f"^{re.escape(_full(each))}$" for each in exclude_topics or ()]
     in_folder = bool(max_bag_size or max_bag_duration or snapshot_duration)
@@ -149,11 +157,11 @@ def record(
 
         raise FileFormatError(path, "already exists; --overwrite replaces it")
     parameters: dict[str, Any] = {
-        "topics": [_full(each) for each in topics or ()],
-        "types": list(topic_types or ()),
-        "regex": regex,
+        "topics": list(selection.topics),
+        "types": list(selection.types),
+        "regex": selection.regex,
         "exclude": "|".join(patterns),
-        "exclude_types": list(exclude_topic_types or ()),
+        "exclude_types": list(map(full_name, exclude_topic_types or ())),
         "images": True,
         "hidden": include_hidden_topics,
         "compression": compression,
@@ -163,13 +171,32 @@ def record(
         "paused": paused,
         "use_sim_time": use_sim_time,
     }
-    if all_:
-        parameters |= {"topics": [], "types": [], "regex": ""}
     raise click.exceptions.Exit(_record(path, parameters, overwrite=overwrite))
 
 
+def _selection(
+    topics: Sequence[str], regex: str, types: Sequence[str], *, all_: bool
+) -> "TopicSelection":
+    """Return the topics to record; ``--all`` overrides the others, as in ROS 2."""
+    from navette.bags.selection import TopicSelection
+    from navette.msgs.registry import full_name
+
+    selection = TopicSelection(
+        tuple(map(_full, topics)), regex, types=tuple(map(full_name, types))
+    )
+    if not all_:
+        return selection
+    if topics or regex or types:
+        note("--all records every topic: TOPIC, --regex, --topic-types have no effect")
+    return TopicSelection()
+
+
 def _full(topic: str) -> str:
-    return topic if topic.startswith("/") else f"/{topic}"
+    from navette.runtime.names import validate_full_topic_name
+
+    full = topic if topic.startswith("/") else f"/{topic}"
+    validate_full_topic_name(full)
+    return full
 
 
 def _path(output: str, *, in_folder: bool) -> Path:
@@ -220,6 +247,7 @@ def _record(path: Path, parameters: dict[str, Any], *, overwrite: bool) -> int:
                 session.run()
         except KeyboardInterrupt:
             pass  # a normal end of a recording
+        recorder.record_queued()
         recorder.close()
         screen.report()
         return FAILED if recorder.error is not None else 0

@@ -1,5 +1,6 @@
 """Rich tables with columns that are never wrapped and harmless text."""
 
+import shutil
 from typing import Any
 
 from rich.console import Console
@@ -61,11 +62,15 @@ def new_table(*names: str) -> Table:
 
 
 def show_table(console: Console, table: Table) -> None:
-    """Print the table without trailing spaces."""
+    """Print the table without trailing spaces; rows are cut to a terminal's width."""
     with console.capture() as capture:
         console.print(table)
-    for line in capture.get().splitlines():
-        console.out(line.rstrip(), highlight=False)
+    for row in capture.get().splitlines():
+        line = Text.from_ansi(row)
+        line.rstrip()
+        if console.is_terminal:
+            line.truncate(shutil.get_terminal_size().columns, overflow="ellipsis")
+        console.print(line)
 
 
 __all__ = ["Table", "new_table", "open_console", "show_table"]

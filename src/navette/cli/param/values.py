@@ -15,7 +15,8 @@ from navette.cli.service_calls import (
     served,
 )
 from navette.cli.session import fail, wait_for
-from navette.errors import ParameterError
+from navette.errors import FileFormatError, ParameterError
+from navette.files.writing import writing
 
 if TYPE_CHECKING:
     from navette.runtime import Node, Parameter
@@ -224,12 +225,20 @@ def as_file(values: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def write(values: Mapping[str, Mapping[str, Any]], folder: Path) -> list[Path]:
-    """Write a file per node, named as in ROS 2: ``ns__node.yaml`` for ``/ns/node``."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write a file per node, named as in ROS 2: ``ns__node.yaml`` for ``/ns/node``.
+
+    Raises:
+        FileFormatError: the folder is a file, or it cannot be written.
+    """
+    if folder.is_file():
+        raise FileFormatError(folder, "is a file; expected a folder, new or existing")
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for node, own in values.items():
         path = folder / f"{node.strip('/').replace('/', '__')}.yaml"
-        path.write_text(as_file({node: own}), encoding="utf-8")
+        with writing(path):
+            path.write_text(as_file({node: own}), encoding="utf-8")
         paths.append(path)
     return paths
 

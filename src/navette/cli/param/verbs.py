@@ -41,6 +41,7 @@ def list_(
             "--param-prefixes",
             "--prefixes",
             metavar="PREFIX...",
+            takes_words=True,
             help="List only names with these prefixes, such as limits for"
             " limits.max_speed_mps.",
         ),

@@ -12,7 +12,7 @@ from navette.cli.options import Argument, Option
 from navette.cli.output import show, show_json
 from navette.cli.stderr import note
 from navette.errors import NavetteError
-from navette.files.runs import live_runs, stay_shared
+from navette.files.runs import live_runs, shares, stay_shared
 
 if TYPE_CHECKING:  # imported when a verb is called: completion must be fast
     from navette.cli.up.config import ProjectConfig
@@ -73,7 +73,8 @@ File = Annotated[
     ),
 ]
 Timeout = Annotated[
-    float, Option(metavar="S", help="How long to wait for readiness, in seconds.")
+    float,
+    Option(metavar="S", min=0, help="How long to wait for readiness, in seconds."),
 ]
 Watch = Annotated[
     bool,
@@ -173,8 +174,10 @@ def ps(
 ) -> None:
     """List running robots, and the processes of services.
 
-    Robots are the runs of navette demo, sim and explore. Each process of the services
-    of navette up has its state, pid, time, CPU, memory and restarts.
+    Robots are the runs of navette demo, sim and explore, except those on the network
+    that all programs share (--share, ROS_DOMAIN_ID): see navette node list. Each
+    process of the services of navette up has its state, pid, time, CPU, memory and
+    restarts.
     """
     from navette.cli.runs import run_record, show_runs
     from navette.cli.up.view import as_record, show_processes
@@ -393,6 +396,11 @@ def _show_nothing_up(client: "SupervisorClient") -> None:
     from navette.supervisor.client import killed_supervisor
 
     show(f"nothing is up in {client.project.folder}")
+    if shares():
+        note(
+            "robots on the shared network, which ROS_DOMAIN_ID, NAVETTE_ROUTER or "
+            "NAVETTE_RUN=shared selects, are not listed: navette node list"
+        )
     pid = killed_supervisor(client.project)
     if pid is not None:
         note(f"its supervisor (pid {pid}) was killed; its processes were ended")

@@ -17,6 +17,8 @@ from navette.navigation.bench.trial import Trial, TrialResult
 if TYPE_CHECKING:
     from navette.navigation.bench.run import NodeLoader
 
+_START = '{"key": "'  # of each line of a results file
+
 
 def run_trials(
     trials: Sequence[Trial],
@@ -41,6 +43,8 @@ def run_trials(
         NavetteError: invalid world, robot or parameter of a trial.
     """
     finished = {} if results_file is None else finished_trials(results_file, trials)
+    if results_file is not None and results_file.exists():
+        _end_last_line(results_file)
     waiting = []
     for trial in trials:
         result = finished.get(trial_key(trial))
@@ -156,15 +160,18 @@ def _rows(file: Path) -> Iterator[tuple[str, str, TrialResult]]:
     """Yield key, version of Navette and result of each line."""
     if not file.exists():
         return
-    _drop_partial_line(file)
-    with file.open(encoding="utf-8") as lines:
-        for number, line in enumerate(lines, 1):
-            by = ""
-            try:
-                row: dict[str, Any] = json.loads(line)
-                key, by = str(row.pop("key")), str(row.pop("navette", ""))
-                yield key, by, TrialResult(**row)
-            except (ValueError, KeyError, TypeError, AttributeError) as error:
+    try:
+        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+    except UnicodeDecodeError as error:
+        raise FileFormatError(file, _fault("", error)) from error
+    for number, line in enumerate(lines, 1):
+        by = ""
+        try:
+            row: dict[str, Any] = json.loads(line)
+            key, by = str(row.pop("key")), str(row.pop("navette", ""))
+            yield key, by, TrialResult(**row)
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            if not _is_partial(line):
                 raise FileFormatError(file, _fault(by, error), number) from error
 
 
@@ -178,8 +185,24 @@ def _fault(by: str, error: Exception) -> str:
     return f"not a result of navette bench ({error})"
 
 
-def _drop_partial_line(file: Path) -> None:
-    """Cut off a last line without an end: the program was killed while it wrote."""
-    content = file.read_bytes()
-    if content and not content.endswith(b"\n"):
-        file.write_bytes(content[: content.rfind(b"\n") + 1])
+def _is_partial(line: str) -> bool:
+    """Whether the program was killed while it wrote this line of a result."""
+    return line.startswith(_START) and not line.endswith("\n") and not _is_json(line)
+
+
+def _is_json(line: str) -> bool:
+    try:
+        json.loads(line)
+    except ValueError:
+        return False
+    return True
+
+
+def _end_last_line(file: Path) -> None:
+    """Cut off a partial last line, so that a result can be appended."""
+    content = file.read_text(encoding="utf-8")
+    *_, last = ["", *content.splitlines(keepends=True)]
+    if _is_partial(last):
+        file.write_text(content.removesuffix(last), encoding="utf-8")
+    elif last and not last.endswith("\n"):
+        file.write_text(f"{content}\n", encoding="utf-8")

@@ -150,7 +150,7 @@ def load_module(source: str) -> ModuleType:
         if not path.is_file():
             raise UnknownNameError(f"{source}: no such file in {Path.cwd()}")
         return _load_file(path.resolve())
-    _put_on_path(Path.cwd())
+    put_on_path(Path.cwd())
     try:
         return importlib.import_module(source)
     except ModuleNotFoundError as error:
@@ -181,7 +181,7 @@ def _load_file(path: Path) -> ModuleType:
     spec = spec_from_file_location(name, path)
     assert spec is not None, "the path is that of a .py file"
     assert spec.loader is not None, "a .py file has a loader"
-    _put_on_path(path.parent)
+    put_on_path(path.parent)
     module = sys.modules[name] = module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
@@ -203,7 +203,8 @@ def _failed(source: str, error: Exception) -> InvalidValueError:
     return InvalidValueError(f"{source}: cannot be imported: {kind}{line}: {error}")
 
 
-def _put_on_path(folder: Path) -> None:
+def put_on_path(folder: Path) -> None:
+    """Let modules of a folder be imported."""
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 

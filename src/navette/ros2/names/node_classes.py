@@ -1,16 +1,15 @@
 """Load node classes by name."""
 
-import importlib
 import inspect
-import sys
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from types import ModuleType
 
 from navette.errors import InvalidValueError, UnknownNameError
+from navette.params.plugins.loading import load_module, put_on_path
 from navette.ros2.names.hook import install
-from navette.ros2.names.program import load_file, search_path
+from navette.ros2.names.program import search_path
 from navette.runtime import Context, Node
 
 _FORMS = "expected MODULE:Class or FILE.py:Class"
@@ -24,7 +23,8 @@ def load_node_class(target: str) -> type[Node]:
     Installs the import hook, so that the module may import rclpy.
 
     Raises:
-        InvalidValueError: the target has another form.
+        InvalidValueError: the target has another form, or it raised while it was
+            imported.
         UnknownNameError: the file, module or node class does not exist.
     """
     place, colon, name = target.rpartition(":")
@@ -83,21 +83,6 @@ def _make(kind: Callable[[], Node], context: Context) -> Node:
 
 def _load(place: str) -> ModuleType:
     if place.endswith(".py"):
-        path = Path(place)
-        if not path.is_file():
-            raise UnknownNameError(f"{path}: no such file in {Path.cwd()}")
-        _put_on_path(search_path(path.resolve()))
-        return load_file(path, path.stem)
-    _put_on_path((Path.cwd(),))
-    try:
-        return importlib.import_module(place)
-    except ModuleNotFoundError as error:
-        raise UnknownNameError(
-            f"module {place!r} cannot be imported: {error}"
-        ) from None
-
-
-def _put_on_path(folders: tuple[Path, ...]) -> None:
-    for folder in map(str, folders):
-        if folder not in sys.path:
-            sys.path.insert(0, folder)
+        for folder in search_path(Path(place).resolve()):
+            put_on_path(folder)
+    return load_module(place)

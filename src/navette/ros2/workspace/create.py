@@ -12,6 +12,7 @@ from pathlib import Path
 from string import Template
 
 from navette.errors import FileFormatError, InvalidNameError
+from navette.files.writing import writing
 from navette.ros2.workspace.manifest import FILE_NAME
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -174,9 +175,10 @@ def _fill(template: str, folder: Path, values: dict[str, str]) -> Path:
     for source in sorted(root.rglob(f"*{_SUFFIX}")):
         relative = str(source.relative_to(root)).removesuffix(_SUFFIX)
         target = folder / relative.format_map(values)
-        target.parent.mkdir(parents=True, exist_ok=True)
         text = Template(source.read_text(encoding="utf-8")).substitute(values)
-        target.write_text(text, encoding="utf-8")
+        with writing(target):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8")
     return folder
 
 

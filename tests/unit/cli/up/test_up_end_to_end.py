@@ -17,6 +17,7 @@ from click.testing import CliRunner, Result
 
 import navette as package
 from navette.cli.app import app
+from navette.files.runs.choice import NETWORK_VARIABLES
 from navette.supervisor.client import killed_supervisor, known_projects
 from navette.supervisor.log_store import LogReader
 from navette.supervisor.project import socket_path
@@ -85,6 +86,17 @@ class Pipe:
 def holder(pipe: Pipe, text: str = "holding") -> str:
     words = [sys.executable, "-u", "-c", HOLD, str(pipe.path), text]
     return json.dumps({"command": words, "name": "hold"})
+
+
+@pytest.mark.usefixtures("bench")
+def test_ps_names_the_network_whose_robots_are_not_listed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for variable in ("NAVETTE_RUN", *NETWORK_VARIABLES):
+        monkeypatch.delenv(variable, raising=False)
+    assert "shared network" not in navette("ps").output
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert "robots on the shared network" in navette("ps").output
 
 
 def test_from_up_to_down(bench: Any) -> None:

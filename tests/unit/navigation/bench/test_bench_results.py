@@ -199,12 +199,46 @@ def test_a_changed_method_is_driven_again(tmp_path: Path) -> None:
     assert trial_key(own) != before
 
 
-def test_a_result_that_was_half_written_is_dropped(tmp_path: Path) -> None:
+def result_line(key: str) -> str:
+    return json.dumps({"key": key, **dataclasses.asdict(result())})
+
+
+def test_a_result_that_was_half_written_is_not_read(tmp_path: Path) -> None:
     file = tmp_path / "results.jsonl"
-    whole = json.dumps({"key": "k", **dataclasses.asdict(result())})
-    file.write_text(whole + "\n" + whole[:40], encoding="utf-8")
+    written = result_line("k") + "\n" + result_line("k")[:40]
+    file.write_text(written, encoding="utf-8")
     assert list(read_results(file)) == ["k"]
-    assert file.read_text(encoding="utf-8") == whole + "\n"
+    assert file.read_text(encoding="utf-8") == written, "reading changes nothing"
+
+
+@pytest.mark.parametrize("cut", [40, None])
+def test_the_next_result_begins_on_a_line_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cut: int | None
+) -> None:
+    file = tmp_path / "results.jsonl"
+    written = result_line("k") + "\n" + result_line("l")[:cut]
+    file.write_text(written, encoding="utf-8")
+    monkeypatch.setattr(
+        "navette.navigation.bench.run.run_trial", lambda trial, load: result("b")
+    )
+    list(run_trials([TRIAL], jobs=1, results_file=file))
+    kept = ["k"] if cut else ["k", "l"]
+    assert list(read_results(file)) == [*kept, trial_key(TRIAL)]
+
+
+@pytest.mark.parametrize(
+    "content", [b'{"a":1}', b"one\ntwo", b"\x89PNG\r\n\xff", b'{"key": "k"}']
+)
+def test_a_file_without_results_is_refused_and_kept(
+    tmp_path: Path, content: bytes
+) -> None:
+    file = tmp_path / "mine.json"
+    file.write_bytes(content)
+    with pytest.raises(FileFormatError, match=r"mine\.json.*not a result of navette"):
+        read_results(file)
+    with pytest.raises(FileFormatError, match=r"mine\.json.*not a result of navette"):
+        list(run_trials([TRIAL], jobs=1, results_file=file))
+    assert file.read_bytes() == content
 
 
 def test_the_replay_command_repeats_the_drive() -> None:

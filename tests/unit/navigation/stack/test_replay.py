@@ -225,7 +225,7 @@ def test_invalid_combinations_are_named(bag: Path, tmp_path: Path) -> None:
     ("target", "reason"),
     [
         ("nowhere.py:Summer", "nowhere.py: no such file"),
-        ("no_such_module_here:Summer", "cannot be imported"),
+        ("no_such_module_here:Summer", "is not installed and not in"),
         ("{file}:Winter", "known: Summer"),
         ("{file}:Nothing", "known: Summer"),
     ],
@@ -233,6 +233,13 @@ def test_invalid_combinations_are_named(bag: Path, tmp_path: Path) -> None:
 def test_missing_programs_are_named(target: str, reason: str, program: str) -> None:
     with pytest.raises(UnknownNameError, match=reason):
         load_node_class(target.format(file=program.rpartition(":")[0]))
+
+
+def test_an_error_of_the_program_is_in_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "broken.py"
+    file.write_text("def (:", encoding="utf-8")
+    with pytest.raises(InvalidValueError, match="imported: SyntaxError"):
+        load_node_class(str(file))
 
 
 @pytest.mark.parametrize("target", ["summer", ":Summer", "a.py:", "a.py:b-c"])

@@ -282,6 +282,18 @@ def test_a_component_that_fails_to_load(
     assert "Failed to load node" in err
 
 
+@pytest.mark.parametrize("element", ["<executable cmd='nosuch'/>", "<node exec='x'/>"])
+def test_a_missing_program_is_named_with_its_place(
+    tmp_path: Path, capsys: Any, element: str
+) -> None:
+    file = tmp_path / "a.launch.xml"
+    file.write_text(f"<launch>\n  {element}\n</launch>", encoding="utf-8")
+    assert launch(file, {}) == 1
+    assert re.search(
+        rf"{file}:2: \w+\('\w+'\): cannot start '", capsys.readouterr().err
+    )
+
+
 def test_an_undeclared_argument(workspace: Path) -> None:
     file = write(workspace, 'DeclareLaunchArgument("speed", default_value="1")')
     with pytest.raises(InvalidValueError, match="'sped'; did you mean 'speed'"):

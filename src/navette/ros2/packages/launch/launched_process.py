@@ -3,6 +3,7 @@
 import os
 from typing import Any, Protocol
 
+from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.events.process import (
     ProcessExited,
     ProcessStarted,
@@ -16,6 +17,7 @@ from navette.ros2.packages.launch.running import LaunchCommand
 from navette.supervisor import (
     GracePeriods,
     ManagedProcess,
+    ProcessError,
     ProcessHandle,
     ProcessState,
     RestartPolicy,
@@ -26,6 +28,9 @@ class ProcessAction(Protocol):
     """The action that a process belongs to."""
 
     log_cmd: bool
+    origin: str
+
+    def describe(self) -> str: ...
 
     def make_command(self, context: LaunchContext) -> LaunchCommand: ...
 
@@ -77,7 +82,11 @@ class LaunchedProcess(ManagedProcess):
         self._output = self._action.make_output(self._context, self.label)
         if self._action.log_cmd:
             get_logger(self.label).info("%s", " ".join(self.command.words))
-        return self._context.runner.start(self.command)
+        try:
+            return self._context.runner.start(self.command)
+        except ProcessError as error:
+            where, entity = self._action.origin, self._action.describe()
+            raise LaunchError.at(where, entity, error) from error
 
     def on_started(self) -> None:
         self._last_pid = self.pid or 0

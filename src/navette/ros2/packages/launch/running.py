@@ -67,7 +67,7 @@ class Runner(Protocol):
         """Start a command.
 
         Raises:
-            LaunchError: it cannot be started.
+            ProcessError: it cannot be started.
         """
 
     def close(self) -> None:

@@ -2,12 +2,10 @@
 
 import sys
 
-from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.ros2_command import with_ros2
 from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.supervisor import (
     ChildProcess,
-    ProcessError,
     ProcessManager,
     StartOptions,
 )
@@ -28,10 +26,7 @@ class SubprocessRunner:
             argv = [*command.prefix, *program, *command.argv[1:]]
         env = with_ros2(command.env)
         options = StartOptions(cwd=command.cwd, env=env, shell=command.shell)
-        try:
-            return self.manager.start(argv, options)
-        except ProcessError as error:
-            raise LaunchError(f"{command.label}: {error}") from error
+        return self.manager.start(argv, options)
 
     def close(self) -> None:
         self.manager.close()

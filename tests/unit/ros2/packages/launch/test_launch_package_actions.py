@@ -278,7 +278,8 @@ def test_an_include_without_a_required_argument(launch: Any, tmp_path: Path) -> 
     file = tmp_path / "part.launch.py"
     file.write_text(LAUNCH_FILE)
     assert launch.run(IncludeLaunchDescription(str(file))) == 1
-    assert f"missing required argument 'who': {file}" in launch.errors
+    assert launch.errors.startswith(f"{file}:6: DeclareLaunchArgument('who'): ")
+    assert "'who' was not provided: give who:=value" in launch.errors
 
 
 @pytest.mark.usefixtures("module")

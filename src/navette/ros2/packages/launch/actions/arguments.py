@@ -62,14 +62,17 @@ class DeclareLaunchArgument(Action):
         context.known_arguments.add(self.name)
         if self.name not in context.launch_configurations:
             if self.default_value is None:
-                raise InvalidLaunchValueError(
-                    f"Required launch argument {self.name!r} was not provided: give "
-                    f"{self.name}:=value ({self.description})"
-                )
+                raise self.not_given()
             context.launch_configurations[self.name] = self.default_value.perform(
                 context
             )
         self._check(context.launch_configurations[self.name])
+
+    def not_given(self) -> InvalidLaunchValueError:
+        return InvalidLaunchValueError(
+            f"Required launch argument {self.name!r} was not provided: give "
+            f"{self.name}:=value ({self.description})"
+        )
 
     def _check(self, value: str) -> None:
         if self.choices is not None and value not in self.choices:

@@ -7,7 +7,7 @@ from typing import Any
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.actions.arguments import SetLaunchConfiguration
 from navette.ros2.packages.launch.actions.opaque_function import OpaqueFunction
-from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError, LaunchError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -135,11 +135,8 @@ class IncludeLaunchDescription(Action):
         """
         declared = description.get_launch_arguments_with_includes()
         names = {argument.name for argument, _ in declared}
-        of_launch = (
-            []
-            if _FILE in context.get_locals_as_dict()
-            else list(context.launch_configurations)
-        )
+        is_of_launch = _FILE not in context.get_locals_as_dict()
+        of_launch = list(context.launch_configurations) if is_of_launch else []
         missing = []
         for argument, includes in declared:
             inside = [name for each in includes for name in each.argument_names]
@@ -149,6 +146,9 @@ class IncludeLaunchDescription(Action):
                 or argument._conditionally_included
                 or argument.name in (*given, *of_launch, *inside)
             ):
+                if is_of_launch:  # no file has this include: name the declaration
+                    where, entity = argument.origin, argument.describe()
+                    raise LaunchError.at(where, entity, argument.not_given())
                 missing.append(argument.name)
         if missing:
             raise InvalidLaunchValueError(

@@ -1,0 +1,8 @@
+"""Whether colours are wanted."""
+
+import os
+
+
+def colours_wanted() -> bool:
+    """Whether a terminal's user wants colours: no ``NO_COLOR``, no dumb terminal."""
+    return "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
