@@ -73,6 +73,11 @@ export abstract class StampedDisplay<T extends { header: Header }> extends Displ
     return header;
   }
 
+  protected override dropParts(): void {
+    this.#kept = [];
+    super.dropParts();
+  }
+
   /** Take the newest message that waits no longer; those before it are outdated. */
   #release(): void {
     const nowNs = this.#nowNs();

@@ -41,6 +41,15 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
     super.clear();
   }
 
+  /** Its size alone may claim more cells than any memory holds. */
+  protected override problemOf({ info, data }: OccupancyGrid): string {
+    const { width, height, resolution, origin } = info;
+    if (width * height !== data.length) return `refused: ${width} × ${height} cells, but ${data.length} values`;
+    if (data.length > 0 && !(resolution > 0 && Number.isFinite(resolution))) return `refused: the resolution is ${resolution} m, not more than 0`;
+    const { translation, rotation } = transformOf(origin);
+    return [...translation, ...rotation].every(Number.isFinite) ? "" : "refused: the origin is not finite";
+  }
+
   protected override take(value: OccupancyGrid): void {
     if (this.message && isBefore(value.header, this.message.header)) this.#updates = []; // another run
     this.message = value;
@@ -129,7 +138,7 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
   }
 
   /** The known cells only. */
-  override bounds(): Box | null {
+  protected override extent(): Box | null {
     if (!this.message) return null;
     if (!this.#isCounted) {
       this.#box = knownBox(this.message);
