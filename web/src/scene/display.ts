@@ -67,6 +67,8 @@ export abstract class Display<T = unknown> {
   /** Time of the page at which the newest message came; null before the first. */
   receivedMs: number | null = null;
   protected message: T | null = null;
+  #built: readonly Part[] | null = null;
+  /** What is built, where it is drawn. */
   #parts: readonly Part[] | null = null;
   /** Why the newest message is refused or could not be drawn; empty if it is drawn. */
   #problem = "";
@@ -123,6 +125,12 @@ export abstract class Display<T = unknown> {
 
   /** Colours, sizes or data changed: make the primitives again when they are drawn. */
   restyle(): void {
+    this.#built = null;
+    this.replace();
+  }
+
+  /** The place changed: primitives remain as they are. */
+  protected replace(): void {
     this.#parts = null;
     this.around.invalidate();
   }
@@ -213,7 +221,7 @@ export abstract class Display<T = unknown> {
   }
 
   protected dropParts(): void {
-    this.#parts = [];
+    this.#built = this.#parts = [];
   }
 
   protected get colour(): string {
@@ -244,7 +252,8 @@ export abstract class Display<T = unknown> {
   }
 
   #make(): void {
-    this.#parts = this.placed(this.build());
+    this.#built ??= this.build();
+    this.#parts = this.placed(this.#built);
     if (this.#parts.length > 0) this.#problem = "";
   }
 }
