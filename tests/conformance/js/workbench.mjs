@@ -123,7 +123,7 @@ async function panels() {
   await open("raw", { topic: "/odom/filtered" });
   await until(page, () => document.querySelectorAll(".raw-tree .raw-row").length > 4);
   seen.raw = await page.textContent(".raw-facts");
-  seen.cutPx = [await cutPx(page.locator(".raw-bar select").last()), await cutPx(page.locator("#frame"))];
+  seen.cutPx = [await cutPx(page.getByRole("combobox", { name: "Topic", exact: true }).last()), await cutPx(page.locator("#frame"))];
   await open("graph");
   await until(page, () => document.querySelectorAll(".graph-node").length > 5);
   await open("diagnostics");
