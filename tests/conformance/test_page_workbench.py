@@ -145,6 +145,7 @@ def test_panels_display_data_and_control_the_run(person: Person) -> None:
     seen = person.seen()
     assert seen["log"]
     assert "Odometry" in seen["raw"]
+    assert seen["cutPx"] == [0, 0], "the topic and the frame are readable"
     # While paused time does not advance; a step of the panel is 100 ms.
     assert seen["whilePaused"] == 0
     assert seen["step"] == 100_000_000
@@ -249,3 +250,4 @@ def test_lengths_are_measured_by_clicks_and_by_a_drag(person: Person) -> None:
     assert lengths == pytest.approx([3.0, 5.0], abs=0.05)
     assert seen["dragged"] == seen["dragging"]
     assert seen["after"] is None
+    assert seen["planned"] == [2, 0, 2, 0]

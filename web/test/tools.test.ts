@@ -4,6 +4,9 @@ import type { ToolContext } from "../src/tools/tool";
 import type { Goal } from "../src/robot/robot_state";
 import { GoalTool } from "../src/tools/goal";
 import { MeasureTool } from "../src/tools/measure";
+import { ToolSet } from "../src/tools/tool_set";
+import type { Operator } from "../src/robot/operator";
+import type { Scene } from "../src/scene/scene";
 import { fromYaw } from "../src/transforms/transform";
 
 describe("measuring", () => {
@@ -49,12 +52,13 @@ describe("the goal", () => {
   const sent: Goal[] = [];
   let goal: Goal | null;
   let isStopped = false;
+  let state = "live";
   const tool = new GoalTool({
     scene: {
       fixedFrame: "odom",
-      connection: { playback: null },
+      connection: { playback: null, get status() { return { state, reason: "" }; } },
       transforms: { lookUp: () => ({ translation: [10, 0, 0], rotation: fromYaw(0) }) },
-      robot: { isSubscribed: () => true, get goal() { return goal; }, get isStopped() { return isStopped; } },
+      robot: { isSubscribed: () => state === "live", get goal() { return goal; }, get isStopped() { return isStopped; } },
       displays: { goal: { isVisible: true } },
       viewing: { viewpoint: { scale: 50 } },
       invalidate: () => undefined,
@@ -85,6 +89,12 @@ describe("the goal", () => {
     isStopped = false;
   });
 
+  it("names the connection as the obstacle while there is none", () => {
+    expect(tool.obstacle).toBe("");
+    for (state of ["connecting", "lost"]) expect(tool.obstacle).toBe("Not connected.");
+    state = "live";
+  });
+
   it("leaves drags elsewhere to the view", () => {
     expect(tool.beginDrag([11.5, 2])).toBe(false);
     goal = null;
@@ -97,6 +107,27 @@ describe("the goal", () => {
     tool.cancel();
     tool.endDrag([15, 2]);
     expect(sent).toEqual([]);
+  });
+});
+
+describe("escape", () => {
+  it("drops what the chosen tool began and the planned waypoints", () => {
+    const scene = {
+      element: document.createElement("div"),
+      fixedFrame: "map",
+      theme: { colour: () => "#000000" },
+      invalidate: () => undefined,
+      groundAt: (px: number, py: number) => [px, py, 0],
+    } as unknown as Scene;
+    const tools = new ToolSet(scene, { waypoints: [] } as unknown as Operator);
+    tools.choose(tools.waypoints);
+    tools.tap(1, 2, false);
+    tools.tap(3, 4, false);
+    tools.choose(tools.all.find(({ id }) => id === "measure")!);
+    tools.tap(5, 6, false);
+    expect(scene.overlay()[0]!.primitives).toHaveLength(6); // a line, two marks with numbers, a point
+    tools.drop();
+    expect(scene.overlay()[0]!.primitives).toEqual([]);
   });
 });
 

@@ -44,6 +44,15 @@ const PANELS = ["displays", "topics", "nodes", "image", "raw", "plot", "paramete
 const until = (page, check, argument, timeout = 90_000) => page.waitForFunction(check, argument, { timeout, polling: 100 });
 const desktop = () => newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
 
+/** Pixels that the text of a select is wider than its room beside the arrow. */
+const cutPx = (select) => select.evaluate((element) => {
+  const style = getComputedStyle(element);
+  const context = new OffscreenCanvas(1, 1).getContext("2d");
+  context.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+  const room = element.clientWidth - parseFloat(style.paddingLeft) - Math.max(20, parseFloat(style.paddingRight));
+  return Math.max(0, context.measureText(element.selectedOptions[0].text).width - room);
+});
+
 async function goals() {
   const page = await desktop();
   // The map grows.
@@ -114,6 +123,7 @@ async function panels() {
   await open("raw", { topic: "/odom/filtered" });
   await until(page, () => document.querySelectorAll(".raw-tree .raw-row").length > 4);
   seen.raw = await page.textContent(".raw-facts");
+  seen.cutPx = [await cutPx(page.getByRole("combobox", { name: "Topic", exact: true }).last()), await cutPx(page.locator("#frame"))];
   await open("graph");
   await until(page, () => document.querySelectorAll(".graph-node").length > 5);
   await open("diagnostics");
@@ -410,6 +420,7 @@ async function restart() {
   console.log("end");
   await until(page, () => navette.connection.status.state === "lost");
   seen.lost = await page.textContent("#headline");
+  await until(page, () => /^Not connected\./.test(document.querySelector("#help").textContent));
   await createInterface({ input: process.stdin })[Symbol.asyncIterator]().next();
   await until(page, () => navette.connection.status.state === "live");
   await until(page, () => navette.connection.topics.has("/map"));
@@ -466,6 +477,18 @@ async function measure() {
   await picture(page, "measure");
   await page.keyboard.press("Escape");
   seen.after = await length();
+
+  // Esc drops planned waypoints as well, beside another tool too.
+  const planned = () => page.evaluate(() => navette.tools.waypoints.planned.length);
+  seen.planned = [];
+  for (const beside of [null, "m"]) {
+    await page.keyboard.press("w");
+    for (const dx of [0, 2]) await page.mouse.click(left + dx * perM, top);
+    if (beside !== null) await page.keyboard.press(beside);
+    seen.planned.push(await planned());
+    await page.keyboard.press("Escape");
+    seen.planned.push(await planned());
+  }
 }
 
 try {

@@ -43,7 +43,7 @@ class RawPanel implements PanelInstance {
     });
     const copy = h("button", { class: "bare", title: "Copy as JSON", "aria-label": "Copy as JSON", onclick: () => void this.#copy() }, icon("copy"));
     const expand = h("button", { class: "bare", title: "Expand", "aria-label": "Expand all", onclick: () => this.#tree.expandAll(4) }, icon("plus"));
-    container.append(h("div", { class: "panel" }, h("div", { class: "bar one-row" }, this.#select.element, this.#pause, this.#compare, expand, copy),
+    container.append(h("div", { class: "panel" }, h("div", { class: "bar raw-bar" }, this.#select.element, h("div", { class: "row" }, this.#pause, this.#compare, expand, copy)),
       h("div", { class: "body", tabindex: "0", role: "region", "aria-label": "Message" }, this.#facts, this.#tree.element, this.#empty.element)));
     this.#begin();
   }

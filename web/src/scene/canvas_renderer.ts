@@ -48,21 +48,30 @@ export class CanvasRenderer implements Renderer {
 
   /** In order; clouds that follow each other, such as those that decay, are one picture. */
   #drawAll(items: readonly DrawItem[]): void {
-    let clouds: PlacedCloud[] = [];
+    let clouds: (PlacedCloud & { item: DrawItem })[] = [];
     let opacity = 1;
     const paintClouds = (): void => {
-      if (clouds.length > 0) this.#clouds.paint(this.#context, clouds);
+      const picture = clouds;
       clouds = [];
+      try {
+        if (picture.length > 0) this.#clouds.paint(this.#context, picture);
+      } catch (error) {
+        for (const { item } of picture) item.fail(error);
+      }
     };
     for (const item of items) {
       if (item.opacity !== opacity) paintClouds();
       this.#context.globalAlpha = opacity = item.opacity;
-      for (const primitive of item.part.primitives) {
-        if (isCloud(primitive)) clouds.push({ points: primitive, fixed_T_points: item.fixed_T_part });
-        else {
-          paintClouds();
-          this.#draw(primitive, item.fixed_T_part);
+      try {
+        for (const primitive of item.part.primitives) {
+          if (isCloud(primitive)) clouds.push({ points: primitive, fixed_T_points: item.fixed_T_part, item });
+          else {
+            paintClouds();
+            this.#draw(primitive, item.fixed_T_part);
+          }
         }
+      } catch (error) {
+        item.fail(error);
       }
     }
     paintClouds();
@@ -106,11 +115,12 @@ export class CanvasRenderer implements Renderer {
   #raster(raster: Raster, pose: Transform): void {
     const context = this.#context;
     const { translation: [x, y], rotation } = compose(pose, raster.pose);
+    const image = this.#image(raster); // fails for a raster without cells: before the state is saved
     context.save();
     context.translate(x, y);
     context.rotate(yawOf(rotation));
     context.imageSmoothingEnabled = false;
-    context.drawImage(this.#image(raster), 0, 0, raster.widthM, raster.heightM);
+    context.drawImage(image, 0, 0, raster.widthM, raster.heightM);
     context.restore();
   }
 

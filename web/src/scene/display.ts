@@ -4,6 +4,7 @@ import type { Connection, Dispose, Message } from "../connection/connection";
 import type { Theme } from "../theme/theme";
 import type { TransformTree } from "../transforms/transform_tree";
 import { placeOf, type Part } from "./primitives";
+import type { Box } from "./viewing";
 
 /** What a user may change; `null`: as the display decides. */
 export interface Look {
@@ -66,7 +67,11 @@ export abstract class Display<T = unknown> {
   /** Time of the page at which the newest message came; null before the first. */
   receivedMs: number | null = null;
   protected message: T | null = null;
+  #built: readonly Part[] | null = null;
+  /** What is built, where it is drawn. */
   #parts: readonly Part[] | null = null;
+  /** Why the newest message is refused or could not be drawn; empty if it is drawn. */
+  #problem = "";
   #end: Dispose | null = null;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #expected: string;
@@ -97,7 +102,7 @@ export abstract class Display<T = unknown> {
     if (this.isVisible && !this.#end) {
       const { rateHz = 30, every = false } = this.traits;
       this.#end = this.around.connection.subscribe<T>(topic, { rateHz, every }, (message) => {
-        if (message.type === this.#expected) this.receive(message);
+        if (message.type === this.#expected) this.attempt(() => this.#accept(message));
       });
     } else if (!this.isVisible) this.dispose();
   }
@@ -114,27 +119,35 @@ export abstract class Display<T = unknown> {
   clear(): void {
     this.message = null;
     this.receivedMs = null;
+    this.#problem = "";
     this.restyle();
   }
 
   /** Colours, sizes or data changed: make the primitives again when they are drawn. */
   restyle(): void {
+    this.#built = null;
+    this.replace();
+  }
+
+  /** The place changed: primitives remain as they are. */
+  protected replace(): void {
     this.#parts = null;
     this.around.invalidate();
   }
 
   /** Primitives of the newest message. */
   parts(): readonly Part[] {
-    if (this.#parts === null) {
-      try {
-        this.#parts = this.placed(this.build());
-      } catch (error) {
-        this.#parts = []; // a message of lengths that do not fit
-        reportError(error);
-      }
-    }
-    return this.#parts;
+    if (this.#parts === null) this.attempt(() => this.#make());
+    return this.#parts ?? [];
   }
+
+  /** Draw nothing until there is something new: an error of one display must not stop the others. */
+  readonly fail = (error: unknown): void => {
+    reportError(error);
+    this.dropParts();
+    this.#problem = `cannot be drawn: ${error instanceof Error ? error.message : String(error)}`;
+    this.around.invalidate();
+  };
 
   status(): DisplayStatus {
     const { connection, transforms, fixedFrame } = this.around;
@@ -143,9 +156,10 @@ export abstract class Display<T = unknown> {
       const known = connection.topics.get(this.topic);
       if (!known?.isPublished) return { level: "empty", text: `no node publishes ${this.topic}` };
       if (known.type !== this.#expected) return { level: "error", text: `wrong type: ${known.type}` };
-      if (this.receivedMs === null) return { level: "empty", text: "no messages yet" };
+      if (this.receivedMs === null && this.#problem === "") return { level: "empty", text: "no messages yet" };
     }
     const part = this.parts()[0];
+    if (this.#problem !== "") return { level: "error", text: this.#problem };
     if (part && fixedFrame !== null && placeOf(part, fixedFrame, transforms) === null) {
       return { level: "error", text: `no transform from ${part.frame || "a frame without a name"} to ${fixedFrame}` };
     }
@@ -154,7 +168,13 @@ export abstract class Display<T = unknown> {
   }
 
   /** Bounds in the frame of the first part: left, low, right, high; null if not known. */
-  bounds(): readonly [number, number, number, number] | null {
+  bounds(): Box | null {
+    let box: Box | null = null;
+    if (this.#problem === "") this.attempt(() => (box = this.extent()));
+    return box;
+  }
+
+  protected extent(): Box | null {
     return null;
   }
 
@@ -187,6 +207,23 @@ export abstract class Display<T = unknown> {
     this.message = value;
   }
 
+  /** Why a message cannot be drawn, which is refused then; empty if it can. */
+  protected problemOf(_value: T): string {
+    return "";
+  }
+
+  protected attempt(act: () => void): void {
+    try {
+      act();
+    } catch (error) {
+      this.fail(error);
+    }
+  }
+
+  protected dropParts(): void {
+    this.#built = this.#parts = [];
+  }
+
   protected get colour(): string {
     return this.look.colour ?? this.around.theme.colour(this.traits.colour ?? "ink");
   }
@@ -202,7 +239,21 @@ export abstract class Display<T = unknown> {
   /** A message that is drawn from now on. */
   protected receive(message: Message<T>): void {
     this.receivedMs = performance.now();
+    this.#problem = "";
     this.take(message.value, message);
     this.restyle();
+  }
+
+  #accept(message: Message<T>): void {
+    const problem = this.problemOf(message.value);
+    if (problem === "") return this.receive(message);
+    this.clear();
+    this.#problem = problem;
+  }
+
+  #make(): void {
+    this.#built ??= this.build();
+    this.#parts = this.placed(this.#built);
+    if (this.#parts.length > 0) this.#problem = "";
   }
 }

@@ -3,7 +3,7 @@
 import { apply, inverse, rotate, type Transform, type Vector } from "../transforms/transform";
 import { convexHull, isInside } from "./hull";
 import type { Hit, Lines, Primitive, Raster, Solid } from "./primitives";
-import type { DrawItem, Ray } from "./renderer";
+import type { PlacedPart, Ray } from "./renderer";
 import { boxAbout, cornersOf } from "./solids";
 
 const REACH_PX = 9;
@@ -13,7 +13,7 @@ const AREA_SHARE = 0.1;
 const HIDDEN_PX = 1e6;
 
 export interface Pick {
-  readonly item: DrawItem;
+  readonly item: PlacedPart;
   readonly primitive: Primitive;
   readonly hit: Hit;
 }
@@ -24,7 +24,7 @@ interface Found extends Hit {
 }
 
 /** Everything near the line of sight: the nearest first, small things before large areas. */
-export function pick(items: readonly DrawItem[], ray: Ray): Pick[] {
+export function pick(items: readonly PlacedPart[], ray: Ray): Pick[] {
   const found: (Pick & { farPx: number; depthM: number })[] = [];
   let firstBodyM = Infinity;
   for (const item of [...items].reverse()) {

@@ -6,7 +6,7 @@
  * frame this is the transform of the stamp, as in RViz.
  */
 
-import { compose, type Transform } from "../transforms/transform";
+import { compose, IDENTITY, type Transform } from "../transforms/transform";
 import type { Place, TransformTree } from "../transforms/transform_tree";
 
 export class Placement {
@@ -40,5 +40,12 @@ export class Placement {
     const place = this.transforms.placeAt(this.frame, this.stampNs);
     this.#place = place.lagNs === 0n ? place : null;
     return place;
+  }
+}
+
+/** Of a map, which stays in its own frame as in RViz: a correction of that frame moves the map with it. */
+export class MapPlacement extends Placement {
+  override in(fixed: string): Transform | null {
+    return fixed === this.frame ? IDENTITY : super.in(fixed);
   }
 }

@@ -4,10 +4,15 @@ import type { Transform } from "../transforms/transform";
 import type { Part } from "./primitives";
 
 /** A part in the fixed frame. */
-export interface DrawItem {
+export interface PlacedPart {
   readonly part: Part;
   readonly fixed_T_part: Transform;
+}
+
+export interface DrawItem extends PlacedPart {
   readonly opacity: number;
+  /** Called when the part cannot be drawn. */
+  fail(error: unknown): void;
 }
 
 /** Where the scene is seen from. */

@@ -69,7 +69,8 @@ export class Scene implements Surroundings {
     if (mapFrame) return mapFrame;
     if (robot.baseFrame !== null) return transforms.root(robot.baseFrame);
     if (transforms.links.size > 0) return transforms.root(transforms.frames[0]!);
-    return this.displays.all.find(({ topic, receivedMs }) => topic !== null && receivedMs !== null)?.parts()[0]?.frame ?? null;
+    const drawn = this.displays.all.find((display) => display.topic !== null && display.receivedMs !== null && display.parts().length > 0);
+    return drawn?.parts()[0]?.frame ?? null;
   }
 
   get chosenFrame(): string | null {
@@ -179,7 +180,7 @@ export class Scene implements Surroundings {
     this.#frameTimes.push(performance.now());
     this.#moveView(fixed);
     this.#items = this.#collect(fixed);
-    const overlay = this.overlay().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1 }));
+    const overlay = this.overlay().map((part) => ({ part, fixed_T_part: IDENTITY, opacity: 1, fail: reportError }));
     this.#renderer.draw([...this.#items, ...overlay], this.viewing.viewpoint, this.theme.colour("unknown"));
     if (!this.#hasPicture && this.robot.baseFrame !== null && fixed !== null) {
       this.#hasPicture = true;
@@ -208,9 +209,10 @@ export class Scene implements Surroundings {
     const items: DrawItem[] = [];
     for (const display of this.displays.all) {
       if (!display.isVisible) continue;
+      const { opacity, fail } = display;
       for (const part of display.parts()) {
         const fixed_T_part = placeOf(part, fixed, this.transforms);
-        if (fixed_T_part) items.push({ part, fixed_T_part, opacity: display.opacity });
+        if (fixed_T_part) items.push({ part, fixed_T_part, opacity, fail });
       }
     }
     return items;

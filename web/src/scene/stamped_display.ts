@@ -10,21 +10,24 @@ import type { Part } from "./primitives";
 
 /** How long a message waits for the transforms of its stamp, in the robot's time. */
 const WAIT_NS = 1_000_000_000n;
+/** Of more, the oldest is drawn by the nearest transforms that are known. */
 const MOST_WAITING = 30;
 /** Messages that remain by decay: at most so many, with so many coordinates in all. */
 const MOST_KEPT = 600;
 const MOST_KEPT_NUMBERS = 3_000_000;
 
-interface Waiting<T> {
-  readonly message: Message<T>;
+interface Waiting {
   readonly placement: Placement;
   readonly sinceNs: bigint;
+  /** Whether it replaces all before it. */
+  readonly isWhole: boolean;
+  show(): void;
 }
 
 export abstract class StampedDisplay<T extends { header: Header }> extends Display<T> {
   #placement: Placement | null = null;
   /** Of stamps newer than the transforms, oldest first. */
-  #waiting: Waiting<T>[] = [];
+  #waiting: Waiting[] = [];
   #kept: { parts: readonly Part[]; untilMs: number; numbers: number }[] = [];
   #endWait: Dispose | null = null;
 
@@ -58,10 +61,28 @@ export abstract class StampedDisplay<T extends { header: Header }> extends Displ
 
   /** Wait until the transforms reach the stamp of the message, if they soon will. */
   protected override receive(message: Message<T>): void {
-    const { frame_id: frame, stamp } = this.headerOf(message.value);
-    const placement = new Placement(this.around.transforms, frame, nanosecondsOf(stamp));
-    this.#waiting.push({ message, placement, sinceNs: this.#nowNs() });
+    const placement = this.placementOf(this.headerOf(message.value));
+    this.whenPlaced(placement, true, () => {
+      if (this.look.decayS > 0) this.#keep();
+      this.#placement = placement;
+      super.receive(message);
+    });
+  }
+
+  /** Show a message, or a change of it, once the transforms reach its stamp. */
+  protected whenPlaced(placement: Placement, isWhole: boolean, show: () => void): void {
+    this.#waiting.push({ placement, isWhole, show, sinceNs: this.#nowNs() });
     this.#release();
+  }
+
+  protected placementOf({ frame_id: frame, stamp }: Header): Placement {
+    return new Placement(this.around.transforms, frame, nanosecondsOf(stamp));
+  }
+
+  /** The message was changed: it is of another stamp now. */
+  protected moveTo(placement: Placement): void {
+    this.#placement = placement;
+    this.replace();
   }
 
   protected override placed(parts: readonly Part[]): readonly Part[] {
@@ -73,18 +94,21 @@ export abstract class StampedDisplay<T extends { header: Header }> extends Displ
     return header;
   }
 
-  /** Take the newest message that waits no longer; those before it are outdated. */
+  protected override dropParts(): void {
+    this.#kept = [];
+    super.dropParts();
+  }
+
+  /** Show the newest message that waits no longer, and changes; messages before it are outdated. */
   #release(): void {
     const nowNs = this.#nowNs();
-    const index = this.#waiting.findLastIndex(({ placement: { lagNs }, sinceNs }) => lagNs === 0n || lagNs > WAIT_NS || nowNs - sinceNs > WAIT_NS);
-    const ready = this.#waiting.splice(0, index + 1).at(-1);
-    if (this.#waiting.length > MOST_WAITING) this.#waiting.shift();
+    const isReady = ({ placement: { lagNs }, sinceNs }: Waiting): boolean => lagNs === 0n || lagNs > WAIT_NS || nowNs - sinceNs > WAIT_NS;
+    const index = Math.max(this.#waiting.findLastIndex(isReady), this.#waiting.length - 1 - MOST_WAITING);
+    const ready = this.#waiting.splice(0, index + 1);
     if (this.#waiting.length > 0) this.#startWaiting();
     else this.#stopWaiting();
-    if (!ready) return;
-    if (this.look.decayS > 0) this.#keep();
-    this.#placement = ready.placement;
-    super.receive(ready.message);
+    const newest = ready.findLast(({ isWhole }) => isWhole);
+    for (const each of ready) if (each === newest || !each.isWhole) this.attempt(() => each.show());
   }
 
   readonly #releaseAgain = (): void => this.#release();

@@ -81,23 +81,11 @@ export class ThreeRenderer implements Renderer {
     const used = new Set<Primitive>();
     const perPx = 1 / viewpoint.scale;
     this.#points?.begin(this.#camera, this.canvas.width, this.canvas.height);
-    items.forEach(({ part, fixed_T_part, opacity }, order) => {
-      for (const primitive of part.primitives) {
-        if (used.has(primitive)) continue;
-        const lift = LAYER_M * order * Math.min(1, 20 * perPx);
-        if (this.#points && primitive.kind === "points" && opacity * rgba(primitive.colour)[3] === 1) {
-          this.#pointCount += primitive.positions.length / 3;
-          this.#points.draw(primitive, matrixOf(fixed_T_part, lift), primitive.sizePx * this.#gl.getPixelRatio());
-          continue;
-        }
-        used.add(primitive);
-        const built = this.#objectOf(primitive);
-        if (!built) continue;
-        built.update?.();
-        moveTo(built.object, fixed_T_part, lift);
-        built.object.renderOrder = order;
-        if (built.sizePx > 0) built.object.children[0]?.scale.setScalar(built.sizePx * perPx);
-        for (const material of built.materials) fade(material, opacity);
+    items.forEach((item, order) => {
+      try {
+        this.#drawItem(item, order, perPx, used);
+      } catch (error) {
+        item.fail(error);
       }
     });
     for (const [primitive, built] of this.#built) {
@@ -108,6 +96,26 @@ export class ThreeRenderer implements Renderer {
     }
     this.#points?.end();
     this.#gl.render(this.#scene, this.#camera);
+  }
+
+  #drawItem({ part, fixed_T_part, opacity }: DrawItem, order: number, perPx: number, used: Set<Primitive>): void {
+    const lift = LAYER_M * order * Math.min(1, 20 * perPx);
+    for (const primitive of part.primitives) {
+      if (used.has(primitive)) continue;
+      if (this.#points && primitive.kind === "points" && opacity * rgba(primitive.colour)[3] === 1) {
+        this.#pointCount += primitive.positions.length / 3;
+        this.#points.draw(primitive, matrixOf(fixed_T_part, lift), primitive.sizePx * this.#gl.getPixelRatio());
+        continue;
+      }
+      used.add(primitive);
+      const built = this.#objectOf(primitive);
+      if (!built) continue;
+      built.update?.();
+      moveTo(built.object, fixed_T_part, lift);
+      built.object.renderOrder = order;
+      if (built.sizePx > 0) built.object.children[0]?.scale.setScalar(built.sizePx * perPx);
+      for (const material of built.materials) fade(material, opacity);
+    }
   }
 
   ray(viewpoint: Viewpoint, px: number, py: number): Ray {

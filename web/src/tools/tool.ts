@@ -61,9 +61,10 @@ export abstract class Tool {
     return this.context.scene.fixedFrame;
   }
 
-  /** A reason if no node subscribes to the topic. */
+  /** A reason if no command reaches a node on the topic. */
   protected needs(topic: string): string {
     const { robot, connection } = this.context.scene;
+    if (connection.status.state !== "live") return "Not connected.";
     if (connection.playback) return "A recording is played: no robot receives commands.";
     return robot.isSubscribed(topic) ? "" : `No node subscribes to ${topic}.`;
   }

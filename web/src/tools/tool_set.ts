@@ -56,6 +56,12 @@ export class ToolSet implements GestureTarget {
     this.#changed();
   }
 
+  /** Drop what was begun, the planned waypoints too: they are drawn beside every tool. */
+  drop(): void {
+    this.#chosen.cancel();
+    this.waypoints.clear();
+  }
+
   tap(px: number, py: number, isSecondary: boolean): void {
     const place = this.scene.groundAt(px, py);
     if (!place) return;

@@ -9,7 +9,7 @@ export class WaypointsTool extends Tool {
   readonly id = "waypoints";
   readonly title = "Waypoints";
   readonly icon = "waypoints";
-  readonly hint = "Click to add waypoints, then Start.";
+  readonly hint = "Click to add waypoints, then Start. Esc clears.";
   readonly key = "w";
   /** Planned, not yet sent. */
   readonly planned: Goal[] = [];

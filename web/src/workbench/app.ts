@@ -197,7 +197,7 @@ export class App {
       { key: "c", text: "Cancel the goal", act: () => operator.cancel() },
       { key: "p", text: "Pause, resume navigation", act: () => view.togglePause() },
       { key: "t", text: "Light, dark theme", act: () => this.theme.choose(this.theme.isDark ? "light" : "dark") },
-      { key: "escape", text: "Drop what was begun", act: () => tools.chosen.cancel() },
+      { key: "escape", text: "Drop what was begun", act: () => tools.drop() },
     ]);
   }
 

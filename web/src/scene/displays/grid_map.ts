@@ -5,28 +5,34 @@
 
 import type { Dispose } from "../../connection/connection";
 import { nanosecondsOf } from "../../transforms/stamp";
-import { Display } from "../display";
 import { transformOf, type GridUpdate, type Header, type OccupancyGrid } from "../messages";
+import { MapPlacement, type Placement } from "../placement";
 import { rgba, type Hit, type Part, type Patch, type Raster } from "../primitives";
+import { StampedDisplay } from "../stamped_display";
 import { unionOf, type Box } from "../viewing";
 
 const UPDATE = "map_msgs/msg/OccupancyGridUpdate";
 /** Updates that are kept for a grid from before them, which is delivered after them. */
 const MOST_KEPT = 20;
 
-export class GridMapDisplay extends Display<OccupancyGrid> {
+interface PlacedUpdate {
+  readonly update: GridUpdate;
+  readonly placement: Placement;
+}
+
+export class GridMapDisplay extends StampedDisplay<OccupancyGrid> {
   #box: Box | null = null;
   #isCounted = false;
   #raster: Raster | null = null;
   #changes: Patch[] = [];
-  #updates: GridUpdate[] = [];
+  #updates: PlacedUpdate[] = [];
   #endUpdates: Dispose | null = null;
 
   override update(): void {
     super.update();
     if (this.topic === null || !this.isVisible) return;
     this.#endUpdates ??= this.around.connection.subscribe<GridUpdate>(`${this.topic}_updates`, { every: true }, (message) => {
-      if (message.type === UPDATE) this.#takeUpdate(message.value);
+      if (message.type === UPDATE) this.attempt(() => this.#takeUpdate(message.value));
     });
   }
 
@@ -41,29 +47,48 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
     super.clear();
   }
 
+  /** Its size alone may claim more cells than any memory holds. */
+  protected override problemOf({ info, data }: OccupancyGrid): string {
+    const { width, height, resolution, origin } = info;
+    if (width * height !== data.length) return `refused: ${width} × ${height} cells, but ${data.length} values`;
+    if (data.length > 0 && !(resolution > 0 && Number.isFinite(resolution))) return `refused: the resolution is ${resolution} m, not more than 0`;
+    const { translation, rotation } = transformOf(origin);
+    return [...translation, ...rotation].every(Number.isFinite) ? "" : "refused: the origin is not finite";
+  }
+
   protected override take(value: OccupancyGrid): void {
     if (this.message && isBefore(value.header, this.message.header)) this.#updates = []; // another run
     this.message = value;
     this.#raster = null;
     this.#isCounted = false;
-    this.#updates = this.#updates.filter((each) => isBefore(value.header, each.header));
+    this.#updates = this.#updates.filter(({ update }) => isBefore(value.header, update.header));
     for (const each of this.#updates) this.#change(value, each);
   }
 
+  protected override placementOf({ frame_id: frame, stamp }: Header): Placement {
+    return new MapPlacement(this.around.transforms, frame, nanosecondsOf(stamp));
+  }
+
   #takeUpdate(update: GridUpdate): void {
+    const placement = this.placementOf(update.header);
+    this.whenPlaced(placement, false, () => this.#apply({ update, placement }));
+  }
+
+  #apply(placed: PlacedUpdate): void {
     const grid = this.message;
-    this.#updates = [...this.#updates, update].slice(-MOST_KEPT);
-    if (!grid || !isBefore(grid.header, update.header)) return;
+    this.#updates = [...this.#updates, placed].slice(-MOST_KEPT);
+    if (!grid || !isBefore(grid.header, placed.update.header)) return;
     this.receivedMs = performance.now();
-    this.#change(grid, update);
+    this.#change(grid, placed);
     this.around.invalidate();
   }
 
   /** Change cells in place: a copy of 16 MB would take longer than all else. */
-  #change({ header, info, data }: OccupancyGrid, update: GridUpdate): void {
+  #change({ header, info, data }: OccupancyGrid, { update, placement }: PlacedUpdate): void {
     const { x, y, width, height } = update;
     const isWithin = x >= 0 && y >= 0 && x + width <= info.width && y + height <= info.height;
     if (header.frame_id !== update.header.frame_id || !isWithin || update.data.length !== width * height) return;
+    this.moveTo(placement);
     for (let row = 0; row < height; row++) {
       const begin = (y + row) * info.width + x;
       for (let column = 0; column < width; column++) data[begin + column] = update.data[row * width + column]!;
@@ -129,7 +154,7 @@ export class GridMapDisplay extends Display<OccupancyGrid> {
   }
 
   /** The known cells only. */
-  override bounds(): Box | null {
+  protected override extent(): Box | null {
     if (!this.message) return null;
     if (!this.#isCounted) {
       this.#box = knownBox(this.message);

@@ -64,7 +64,7 @@ export class CloudDisplay extends StampedDisplay<PointCloud2> {
     }];
   }
 
-  override bounds(): readonly [number, number, number, number] | null {
+  protected override extent(): readonly [number, number, number, number] | null {
     return this.#box;
   }
 

@@ -253,12 +253,19 @@ export class GroundGridDisplay extends Display {
     const [left, low, right, high] = this.view;
     const step = this.stepM;
     const positions: number[] = [];
-    for (let x = Math.ceil(left / step) * step; x <= right; x += step) positions.push(x, low, 0, x, high, 0);
-    for (let y = Math.ceil(low / step) * step; y <= high; y += step) positions.push(left, y, 0, right, y, 0);
+    for (const x of multiples(step, left, right)) positions.push(x, low, 0, x, high, 0);
+    for (const y of multiples(step, low, high)) positions.push(left, y, 0, right, y, 0);
     return [{ frame, primitives: [{ kind: "lines", positions: Float32Array.from(positions), mode: "segments", colour: this.colour, widthPx: 1 }] }];
   }
 
   protected override detail(): string {
     return `${this.stepM} m`;
   }
+}
+
+/** Multiples of a step from low to high, counted: far from the origin a sum with the step may be the same number. */
+function multiples(step: number, low: number, high: number): number[] {
+  const first = Math.ceil(low / step);
+  const count = Math.floor(high / step) - first + 1;
+  return Array.from({ length: Math.max(0, count) }, (_, index) => (first + index) * step);
 }
