@@ -155,7 +155,10 @@ def test_a_goal_that_takes_too_long_times_out(graph: GraphHarness) -> None:
     FakePlanner(graph, ["following"])
     send_map(graph)
     node = mission(graph, goals_m=[1.0, 0.0], goal_timeout_s=3.0)
+    timed_out: list[tuple[float, float]] = []
+    node.on_timed_out = timed_out.append
     assert graph.run_until(lambda: node.done, 10.0)
+    assert timed_out == [(1.0, 0.0)]
     assert node.outcomes[0].result == "timed_out"
     assert node.outcomes[0].time_s == pytest.approx(3.0, abs=0.11)
 
