@@ -56,7 +56,7 @@ class MonitorNode(Node):
             )
 
     def on_timed_out(self, goal: tuple[float, float]) -> None:
-        """Show that a goal timed out; the planner reports only that it was cancelled."""
+        """Show that a goal timed out; the planner reports only its cancellation."""
         self._timed_out = self.progress.goal_id
         self.progress = replace(
             self.progress,
