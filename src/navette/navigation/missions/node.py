@@ -179,7 +179,6 @@ class MissionNode(StageNode):
         )
         self._robot.on_planner_status(report)
         self._step()
-        self._send_next()
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message; the path length is updated a few times a second."""

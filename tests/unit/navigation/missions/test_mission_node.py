@@ -111,6 +111,26 @@ def test_no_goal_is_sent_before_map_and_planner_are_available(
     assert len(planner.goals) == 1
 
 
+@pytest.mark.parametrize("map_first", [True, False])
+def test_the_order_of_map_and_status_does_not_change_when_the_first_goal_is_sent(
+    graph: GraphHarness, map_first: bool
+) -> None:
+    """A replay of a recording may deliver both in another order than the run."""
+    mission(graph, goals_m=[1.0, 0.0])
+    graph.collect("/goal_point", PointStamped)
+    logged = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+    waiting = DiagnosticStatus(message="waiting_for_goal")
+    sends = [
+        lambda: send_map(graph),
+        lambda: graph.publish("/planner/status", waiting, latched=True),
+    ]
+    for send in sends if map_first else reversed(sends):
+        send()
+    graph.run_for(0.5)
+    (sent,) = [m for m in logged.messages if m.msg.startswith("goal 1 of 1")]
+    assert sent.stamp.nanosec == 100_000_000
+
+
 def test_what_the_first_goal_waits_for_is_logged_once(graph: GraphHarness) -> None:
     logged = graph.collect("/rosout", "rcl_interfaces/msg/Log")
     mission(graph, goals_m=[1.0, 0.0])
