@@ -21,6 +21,7 @@ from navette.sim.instant import Instant
 from navette.sim.lidar import Lidar
 from navette.sim.masks import SEEN, SEEN_SOLID
 from navette.sim.robot_state import RobotState
+from navette.sim.rolling import RollingTest
 from navette.sim.sensors import lidars_of
 from navette.sim.shape_table import ShapeTable
 
@@ -62,7 +63,7 @@ class Sensor:
         self.lidar = Lidar(sensor, own.mount, params, compiled)
         self._shapes = ShapeTable(self.model, (SEEN_SOLID, SEEN))
         state = RobotState(compiled.robot, self.data)
-        contacts = ContactMonitor(compiled, self.data)
+        contacts = ContactMonitor(compiled, RollingTest(compiled, self.data))
         self._now = Instant(self.model, self.data, state, 0, contacts)
         self._rng = np.random.default_rng(0)
         self.angles = np.linspace(sensor.angle_min, sensor.angle_max, beams)

@@ -1,6 +1,5 @@
 """The command line: global options, ``demo`` and ``sim``; other verbs load lazily."""
 
-import math
 import os
 import sys
 from pathlib import Path
@@ -15,6 +14,7 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     split_run,
+    start_pose,
     without_daemon,
 )
 from navette.cli.commands import LazyGroup
@@ -263,14 +263,13 @@ def sim(
     With --headless and goals: runs as fast as possible, drives to the goals in order
     and exits with 0 only if all goals were reached without contact.
     """
-    from navette.geometry import Pose2
     from navette.navigation.stack import RunOptions
 
     options = RunOptions(
         world=world,
         robot=robot,
         sensors=tuple(sensor or ()),
-        start=Pose2(start[0], start[1], math.radians(start[2])) if start else None,
+        start=start_pose(start),
         goals=tuple(parse_goal(text) for text in goal or ()),
         headless=headless,
         speed=parse_speed(speed or ("max" if headless and goal else "1")),

@@ -3,8 +3,12 @@
 import math
 from collections.abc import Collection, Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from navette.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from navette.geometry import Pose2
 
 PAIR_OPTIONS = ("--goal",)
 _DAEMON_VERBS = (
@@ -147,3 +151,10 @@ def parse_speed(text: str) -> float:
             f"--speed {text!r} is not a factor above 0, as in 2.5, or max"
         )
     return factor
+
+
+def start_pose(start: tuple[float, float, float] | None) -> "Pose2 | None":
+    """Return the pose of ``--start X Y YAW_DEG``; None without the option."""
+    from navette.geometry import Pose2  # not imported for completion and help
+
+    return Pose2(start[0], start[1], math.radians(start[2])) if start else None

@@ -20,9 +20,10 @@ from navette.cli.app import (
     Seed,
     Sensors,
     Speed,
+    Start,
     World,
 )
-from navette.cli.arguments import parse_speed
+from navette.cli.arguments import parse_speed, start_pose
 from navette.cli.bag.text import counted
 from navette.cli.hanging_indent import print_beside
 from navette.cli.methods import MethodOptions
@@ -55,6 +56,7 @@ def explore(
     world: World = "arena",
     robot: Robot = None,
     sensor: Sensors = None,
+    start: Start = None,
     running: Annotated[
         bool,
         Option("--running", help="Explore with the running robot, not the simulator."),
@@ -82,6 +84,11 @@ def explore(
             "--costmap, --mapping, --localization, --replace and -p choose the "
             "methods of a simulated one; leave them out"
         )
+    if running and start is not None:
+        raise InvalidValueError(
+            "--running explores with the robot as it runs: it starts where it is; "
+            "leave out --start"
+        )
     if running and record is not None:
         raise InvalidValueError(
             "--running explores with the robot as it runs: record it with "
@@ -96,6 +103,7 @@ def explore(
             world=world,
             robot=robot,
             sensors=tuple(sensor or ()),
+            start=start_pose(start),
             headless=headless,
             speed=parse_speed(speed or ("max" if headless else "1")),
             seed=seed,

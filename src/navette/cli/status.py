@@ -116,7 +116,7 @@ class StatusScreen:
         )
 
     def _report_open_goals(self, summary: RunSummary) -> None:
-        """Print goals that the planner has not given up: timed out or unfinished."""
+        """Print goals whose end is not shown yet: mostly unfinished ones."""
         for goal in summary.goals:
             if goal.result == "reached":
                 continue

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.files.kernels import kernel
+from navette.sim.bounds import bounds_of
 from navette.sim.build import Compiled
 from navette.sim.masks import OBSTACLE
+from navette.sim.rolling import RollingTest
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,14 @@ class ClearanceProbe:
     """Distance of body to obstacles: bounding boxes first, then exact pairs.
 
     Pairs of an obstacle and a part of the robot are tried in the order of a lower bound
-    on their distance; the search ends when no bound is below the best pair found.
+    on their distance; the search ends when no bound is below the best pair found. An
+    obstacle that a wheel rolls on is not one for this wheel.
     """
 
-    def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
+    def __init__(
+        self, compiled: Compiled, data: mujoco.MjData, rolling: RollingTest
+    ) -> None:
+        self._rolling = rolling
         model = compiled.model
         self._compiled = compiled
         obstacles = np.flatnonzero(compiled.is_obstacle)
@@ -51,7 +57,6 @@ class ClearanceProbe:
         """Return the nearest obstacle (kinematics must be up to date)."""
         if not len(self._obstacles):
             return Clearance(np.inf, "")
-        model = self._compiled.model
         self._update_bounds(data)
         best, nearest, bounds = np.inf, -1, self._bounds
         while True:
@@ -61,11 +66,25 @@ class ClearanceProbe:
             bounds[pair] = np.inf  # measured below
             row, column = divmod(pair, len(self._parts))
             obstacle, part = int(self._obstacles[row]), int(self._parts[column])
-            limit = min(best, 1e3)
-            distance = mujoco.mj_geomDistance(model, data, part, obstacle, limit, None)
+            distance = self._distance(data, part, obstacle, min(best, 1e3))
             if distance < best:
                 best, nearest = distance, obstacle
-        return Clearance(float(best), self._compiled.geom_owner[nearest])
+        owner = self._compiled.geom_owner[nearest] if nearest >= 0 else ""
+        return Clearance(float(best), owner)
+
+    def _distance(
+        self, data: mujoco.MjData, part: int, obstacle: int, limit: float
+    ) -> float:
+        """Return the distance of a pair; infinite if the part rolls on the obstacle."""
+        ends = np.zeros(6)  # nearest points of the part and of the obstacle
+        distance = mujoco.mj_geomDistance(
+            self._compiled.model, data, part, obstacle, limit, ends
+        )
+        length = math.copysign(math.dist(ends[:3], ends[3:]), distance)
+        up = (ends[2] - ends[5]) / length if length else 0.0
+        geoms = np.array([part]), np.array([obstacle])
+        rolls = self._rolling.rolls(*geoms, np.array([up]), np.array([distance]))
+        return math.inf if rolls[0] else distance
 
     def _update_bounds(self, data: mujoco.MjData) -> None:
         """Write a lower bound of the distance for each obstacle and part."""
@@ -102,14 +121,3 @@ def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Geoms that can touch obstacles (tyres touch the ground only)."""
     touches: NDArray[np.bool_] = (np.array(model.geom_conaffinity) & OBSTACLE) != 0
     return touches
-
-
-def bounds_of(
-    model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Corners (N, 3) of axis-aligned boxes around geoms, world frame."""
-    rotation = data.geom_xmat[geoms].reshape(-1, 3, 3)
-    local = model.geom_aabb[geoms]
-    middle = data.geom_xpos[geoms] + np.einsum("nij,nj->ni", rotation, local[:, :3])
-    half = np.einsum("nij,nj->ni", np.abs(rotation), local[:, 3:])
-    return middle - half, middle + half

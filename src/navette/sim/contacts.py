@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.sim.build import Compiled
-from navette.sim.clearance import bounds_of
+from navette.sim.rolling import RollingTest
 
 _GAP_NS = 250_000_000  # a repeated contact within this time belongs to the same episode
 
@@ -45,17 +45,20 @@ class Touch(NamedTuple):
 class ContactMonitor:
     """Collects contacts of the robot with obstacles.
 
-    Wheels, casters and other parts that reach the ground may touch the ground.
+    Wheels, casters and other parts that reach the ground may touch the ground, and roll
+    on obstacles.
     """
 
-    def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
+    def __init__(self, compiled: Compiled, rolling: RollingTest) -> None:
         self._owner = compiled.geom_owner
         self._robot = compiled.is_robot
-        part = np.where(_stands(compiled, data), _STANDS, _BODY)
+        self._rolling = rolling
+        part = np.where(rolling.stands, _STANDS, _BODY)
         other = np.where(compiled.is_ground, _GROUND, _OBSTACLE)
         self._kind = np.where(compiled.is_robot, part, other)
         self.episodes: list[ContactEpisode] = []
-        self._harmless = b""  # the newest pairs of geoms without a contact that counts
+        # The newest pairs of geoms without a contact that can count.
+        self._harmless = b""
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
         self._touches: dict[tuple[int, int], Touch] = {}  # by the pair of geoms
 
@@ -85,6 +88,7 @@ class ContactMonitor:
         if not bad.any():
             self._harmless = key
             return False
+        bad &= ~self._rolls(data)
         for pair, (x, y, z) in zip(pairs[bad], data.contact.pos[bad], strict=True):
             mine, other = pair if self._robot[pair[0]] else pair[::-1]
             place = (float(x), float(y), float(z))
@@ -94,7 +98,19 @@ class ContactMonitor:
                 touch = Touch(int(mine), [], now_ns)
                 self._touches[int(mine), int(other)] = touch
             touch.places.append(place)
-        return True
+        return bool(bad.any())
+
+    def _rolls(self, data: mujoco.MjData) -> NDArray[np.bool_]:
+        """Return which contacts are those of a wheel that rolls on an obstacle."""
+        first, second = data.contact.geom.T
+        is_first = self._robot[first]
+        up = data.contact.frame[:, 2]  # of the normal, from the first to the second
+        return self._rolling.rolls(
+            np.where(is_first, first, second),
+            np.where(is_first, second, first),
+            np.where(is_first, -up, up),
+            data.contact.dist,
+        )
 
     def _note(
         self, part: str, obstacle: str, place: tuple[float, float, float], now_ns: int
@@ -105,13 +121,3 @@ class ContactMonitor:
             return
         self._open[obstacle] = len(self.episodes)
         self.episodes.append(ContactEpisode(now_ns, now_ns, part, obstacle, place))
-
-
-def _stands(compiled: Compiled, data: mujoco.MjData) -> NDArray[np.bool_]:
-    """Geoms that reach down to the wheels' contact height, (ngeom,) bool."""
-    model = compiled.model
-    low = bounds_of(model, data, np.arange(model.ngeom))[0][:, 2]
-    floor = low[compiled.is_robot & (model.geom_conaffinity != 0)].min()
-    slack = 0.1 * compiled.robot.drive.wheel_radius
-    stands: NDArray[np.bool_] = compiled.is_robot & (low <= floor + slack)
-    return stands

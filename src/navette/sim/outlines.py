@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.sim.bounds import bounds_of
 from navette.sim.build import Compiled
-from navette.sim.clearance import bounds_of
 from navette.sim.profile import convex_hull
 
 _CORNERS = 16  # of the polygon around a circle

@@ -9,10 +9,13 @@ from navette.geometry import Transform3, Vector3
 from navette.msgs import topics
 from navette.msgs.topics import StackTopic
 from navette.sim.drive_geometry import base_of
+from navette.sim.drive_profile import drive_parameters, full_lock_radius
 from navette.sim.scene import (
+    AckermannDrive,
     Box,
     Capsule,
     Cylinder,
+    DiffDrive,
     Ellipsoid,
     Geometry,
     Model,
@@ -66,20 +69,21 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
     """Return parameters by node name; speeds from the drive's limits, else by size.
 
     Defaults for a robot of radius r: 1 m/s, less if r < 0.5 m; 1 s to full speed, 0.5 s
-    to full yaw rate.
+    to full yaw rate. The kind of the drive and a car's turning radius are the model's.
     """
     assert model.drive is not None, "derive_parameters() of a model without a drive"
     outline = footprint_of(model)
     flat = [round(value, 4) for point in outline for value in point]
     radius = max(math.hypot(x, y) for x, y in outline)
-    limits = model.drive.limits
+    drive = model.drive
+    limits = drive.limits
     speed = limits.speed or min(1.0, 2.0 * radius)
     reverse = limits.reverse_speed or speed / 2
-    yaw_rate = limits.yaw_rate or min(2.0, speed / max(radius, 0.1))
+    yaw_rate = limits.yaw_rate or _yaw_rate(drive, speed, radius)
     acceleration = limits.acceleration or speed
     yaw_acceleration = limits.yaw_acceleration or 2 * yaw_rate
     cruise = 0.7 * speed
-    return {
+    parameters: dict[str, dict[str, object]] = {
         **_costmap_parameters(model, flat),
         "sim": {
             "max_speed_mps": speed,
@@ -110,6 +114,16 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
             "turn_acceleration_radps2": min(yaw_acceleration, 2.0),
         },
     }
+    for node, values in drive_parameters(drive, speed, cruise).items():
+        parameters[node].update(values)
+    return parameters
+
+
+def _yaw_rate(drive: DiffDrive, speed: float, radius: float) -> float:
+    """Return the default of the highest yaw rate: a car's is that of its bends."""
+    if isinstance(drive, AckermannDrive):
+        return speed / full_lock_radius(drive)
+    return min(2.0, speed / max(radius, 0.1))
 
 
 _HEADROOM_M = 0.1  # above the robot, within which an obstacle counts

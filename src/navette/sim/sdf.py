@@ -3,7 +3,7 @@
 
 Supported: world, model (nested too), actor, link, frame, joint (fixed, revolute,
 continuous, prismatic, ball), collision and visual with primitive shapes, sensors,
-diff-drive plugins, gravity. Other elements are ignored with one warning per kind.
+drive plugins, gravity. Other elements are ignored with one warning per kind.
 """
 
 from dataclasses import replace
@@ -180,7 +180,7 @@ def _read_model(node: XmlNode, unsupported: Unsupported) -> Model:
             unsupported.note(f"<{child.tag}> in <model>", child)
     links = [_read_link(child, graph, unsupported) for child in node.all("link")]
     joints = [_read_joint(child, graph, unsupported) for child in node.all("joint")]
-    drive = find_drive(node.all("plugin"), unsupported)
+    drive = find_drive(node.all("plugin"), joints, unsupported)
     for inner in nested:
         model_T_inner = graph.pose_of(inner.name, node)
         links += [_lift_link(link, inner.name, model_T_inner) for link in inner.links]

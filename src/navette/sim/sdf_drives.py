@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """SDF drive plugins (Gazebo classic, Ignition, gz)."""
 
-from collections.abc import Iterable
-from dataclasses import fields
+from collections.abc import Iterable, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 from navette.sim.scene import (
     AckermannDrive,
     DiffDrive,
+    Joint,
     MecanumDrive,
     SpeedLimits,
 )
@@ -44,13 +45,13 @@ _DRIVES = {
 
 
 def find_drive(
-    plugins: Iterable[XmlNode], unsupported: Unsupported
+    plugins: Iterable[XmlNode], joints: Sequence[Joint], unsupported: Unsupported
 ) -> DiffDrive | None:
     """Read the first drive; note plugins that have no counterpart in Navette."""
     drive = None
     for plugin in plugins:
         if _is_drive(plugin):
-            drive = drive or read_drive(plugin)
+            drive = drive or _read_drive(plugin, joints, unsupported)
         else:
             note_plugin(plugin, unsupported)
     return drive
@@ -77,7 +78,9 @@ def _plugin_name(plugin: XmlNode) -> str:
     return f"{a.get('filename', '')} {a.get('name', '')}".lower()
 
 
-def read_drive(plugin: XmlNode) -> DiffDrive:
+def _read_drive(
+    plugin: XmlNode, joints: Sequence[Joint], unsupported: Unsupported
+) -> DiffDrive:
     """Read the plugin of a drive: wheel joints, geometry and limits.
 
     Gazebo's differential, skid-steer, AckermannSteering and MecanumDrive plugins.
@@ -87,8 +90,27 @@ def read_drive(plugin: XmlNode) -> DiffDrive:
         return _read_mecanum(plugin)
     drive = _read_wheels(plugin)
     if any(key in text for key in _DRIVES["ackermann"]):
-        return _read_ackermann(plugin, drive)
+        unsteered = _without_steered(plugin, drive, joints, unsupported)
+        return _read_ackermann(plugin, unsteered)
     return drive
+
+
+def _without_steered(
+    plugin: XmlNode, drive: DiffDrive, joints: Sequence[Joint], unsupported: Unsupported
+) -> DiffDrive:
+    """Leave out driven wheels that are steered; these roll freely.
+
+    Gazebo's own examples name the front wheels beside the rear ones. Gazebo turns both
+    at one speed, at which the front wheels, on wider circles, would slip.
+    """
+    names = _joints(plugin, "left_steering") + _joints(plugin, "right_steering")
+    hubs = {joint.child for joint in joints if joint.name in names}
+    steered = {joint.name for joint in joints if joint.parent in hubs}
+    left = tuple(name for name in drive.left_joints if name not in steered)
+    right = tuple(name for name in drive.right_joints if name not in steered)
+    if (left, right) != (drive.left_joints, drive.right_joints):
+        unsupported.note("drive of steered wheels (they roll freely)", plugin)
+    return replace(drive, left_joints=left, right_joints=right)
 
 
 def _read_ackermann(plugin: XmlNode, drive: DiffDrive) -> AckermannDrive:
@@ -105,8 +127,8 @@ def _read_ackermann(plugin: XmlNode, drive: DiffDrive) -> AckermannDrive:
         raise plugin.error("<wheel_base> must be > 0, <steering_limit> 0 … 1.5 rad")
     if len(drive.left_joints) != 1 or len(drive.right_joints) != 1:
         raise plugin.error(
-            "Ackermann steering needs one <left_joint> and one <right_joint>: the "
-            "driven wheels at the rear"
+            "Ackermann steering needs one <left_joint> and one <right_joint> of wheels "
+            "that are not steered, at the rear; steered ones beside them roll freely"
         )
     return AckermannDrive(
         **_fields(drive),

@@ -32,6 +32,7 @@ from navette.sim.lidar import Lidar, Scan
 from navette.sim.outlines import outlines_of
 from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
+from navette.sim.rolling import RollingTest
 from navette.sim.scene import Scene
 from navette.sim.sensor_specs import (
     CameraSensor,
@@ -87,8 +88,9 @@ class Simulator:
         self._ramp = make_ramp(self.params, self.compiled.robot.drive)
         self.state = RobotState(self.compiled.robot, self._data)
         mujoco.mj_kinematics(self.compiled.model, self._data)
-        self._probe = ClearanceProbe(self.compiled, self._data)
-        self.contacts = ContactMonitor(self.compiled, self._data)
+        rolling = RollingTest(self.compiled, self._data)
+        self._probe = ClearanceProbe(self.compiled, self._data, rolling)
+        self.contacts = ContactMonitor(self.compiled, rolling)
         #: What measures, by the kind of sensor; in the order of the model.
         self.devices = make_devices(self.compiled, self.params)
         self._wheel_odometry = WheelOdometry(

@@ -81,7 +81,7 @@ def _read(path: Path) -> Model:
         for node in root.all("link")
     )
     plugins = (p for node in root.all("gazebo") for p in node.all("plugin"))
-    drive = find_drive(plugins, unsupported)
+    drive = find_drive(plugins, joints, unsupported)
     model = Model(name=root.name(), links=links, joints=joints, drive=drive)
     model = made_visible(model, root, unsupported)
     unsupported.report()

@@ -233,6 +233,45 @@ def test_invalid_bytes_are_reported() -> None:
     assert found.problem.startswith("at 1.000 s: ")
 
 
-def test_nothing_to_compare_is_an_error() -> None:
-    with pytest.raises(InvalidValueError, match="nothing to compare"):
-        compare(MemorySource(numbers(1)), MemorySource(numbers(1)), topics=["/x"])
+def test_messages_of_a_silent_node_are_not_distinguished_from_those_of_others() -> None:
+    paths = [recorded(TEXT, 1.0, String(data="of another node"))]
+    compared = [*numbers(1), *paths]
+
+    def result(got: list[BagMessage], *shared: str) -> Comparison:
+        return compare(MemorySource(compared), MemorySource(got), shared=shared)
+
+    assert not result(numbers(1)).same
+    found = result(numbers(1), "/text")
+    assert found.same
+    assert found.of_others == ("/text",)
+    assert [topic.name for topic in found.topics] == ["/number"]
+    # What the node published itself is compared, and what is missing counts.
+    wrong = [*numbers(1), recorded(TEXT, 1.0, String(data="of the node"))]
+    assert not result(wrong, "/text").same
+    assert result(compared, "/text").topics[1].compared == 1
+
+
+def test_a_recording_without_messages_of_a_node_agrees_with_its_silence() -> None:
+    def result(got: list[BagMessage]) -> Comparison:
+        return compare(MemorySource(numbers(1)), MemorySource(got), topics=["/text"])
+
+    found = result([])
+    assert found.same
+    assert not found.topics
+    with pytest.raises(InvalidValueError, match="no messages on /text; was the node"):
+        result([recorded(TEXT, 1.0, String(data="new"))])
+
+
+def test_the_name_of_the_player_stands_for_those_of_the_recorded_nodes() -> None:
+    def differs(got: str) -> bool:
+        tolerances = Tolerances(stand_in="/replay")
+        found = compare(
+            MemorySource([recorded(TEXT, 1.0, String(data="/behaviors,/control"))]),
+            MemorySource([recorded(TEXT, 1.0, String(data=got))]),
+            tolerances=tolerances,
+        )
+        return not found.same
+
+    assert not differs("/replay")
+    assert differs("/other")
+    assert differs("")

@@ -43,6 +43,27 @@ def test_methods_of_a_running_robot_are_refused() -> None:
     ended = CliRunner().invoke(app, ["explore", "--running", "--planner", "dijkstra"])
     assert ended.exit_code != 0
     assert "--planner" in str(ended.exception) + ended.stderr
+    ended = CliRunner().invoke(app, ["explore", "--running", "--start", "1", "2", "0"])
+    assert ended.exit_code != 0
+    assert "--start" in str(ended.exception) + ended.stderr
     ended = CliRunner().invoke(app, ["explore", "--running", "--record", "x.mcap"])
     assert ended.exit_code != 0
     assert "navette bag record" in str(ended.exception) + ended.stderr
+
+
+def test_a_world_whose_origin_is_in_a_wall_is_explored_from_a_start(
+    tmp_path: Path,
+) -> None:
+    world = tmp_path / "walled.sdf"
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    world.write_text(
+        "<sdf version='1.9'><world name='walled'><model name='block'>"
+        f"<static>1</static><link name='l'><collision name='c'>{box}</collision>"
+        "</link></model></world></sdf>",
+        encoding="utf-8",
+    )
+    words = ["explore", str(world), "--headless", "--json", "--max-time", "3"]
+    refused = CliRunner().invoke(app, words)
+    assert "pass another start" in str(refused.exception) + refused.stderr
+    ended = CliRunner().invoke(app, [*words, "--start", "-3", "0", "90"])
+    assert json.loads(ended.stdout)["contacts"] == 0

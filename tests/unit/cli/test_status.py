@@ -242,3 +242,23 @@ def test_a_retry_is_no_other_goal() -> None:
         "→ goal (1.0, 2.0), retry 1",
         "✗ goal (1.0, 2.0) stuck",
     ]
+
+
+def test_a_goal_that_timed_out_is_one_line_at_its_time() -> None:
+    screen = StatusScreen(RunOptions(goals=((1.0, 2.0), (3.0, 4.0))))
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    screen.on_change(
+        RunProgress(
+            goal=(1.0, 2.0), goal_id="1", state="timed_out", failed=True, sim_time_s=3.0
+        )
+    )
+    summary = RunSummary(
+        goals=(GoalOutcome((1.0, 2.0), "timed_out", 3.0, 1.0, 9.0),),
+        contacts=0, min_clearance_m=None, sim_time_s=6.5, wall_time_s=1.0,
+        real_time_factor=6.5, seed=0, pose_error_m=PoseError(0.0, 0.0),
+    )  # fmt: skip
+    screen.report(summary, interrupted=False)
+    first, last = shown.getvalue().splitlines()
+    assert first == "     3.0 s  ✗ goal (1.0, 2.0) timed_out"
+    assert last.startswith("done: 0 of 2 goals reached")

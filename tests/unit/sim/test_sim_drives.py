@@ -9,7 +9,11 @@ import pytest
 
 from navette.errors import FileFormatError, InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.sim import footprint_of, load_robot, load_world
+from navette.navigation.control.params import ControlParams
+from navette.navigation.planning.params import PlannerParams
+from navette.sim import __file__ as sim_file
+from navette.sim import derive_parameters, footprint_of, load_robot, load_world
+from navette.sim.drive_geometry import base_of, drive_wheels
 from navette.sim.params import SimParams
 from navette.sim.scene import AckermannDrive, Model, Scene
 from navette.sim.sdf import read_sdf
@@ -171,3 +175,54 @@ def test_the_models_have_their_drives() -> None:
 
     assert kind("racecar") == "AckermannDrive"
     assert kind("mecanum") == "MecanumDrive"
+
+
+def test_bends_of_a_car_are_derived_from_its_model() -> None:
+    derived = derive_parameters(load_robot("racecar").model)
+    full_lock = 0.3302 / math.tan(0.41)
+    planner = PlannerParams.from_dict(derived["planner"])
+    control = ControlParams.from_dict(derived["control"])
+    assert planner.drive == control.drive == derived["behaviors"]["drive"]
+    assert planner.drive == "ackermann"
+    assert planner.min_turning_radius_m == pytest.approx(0.85, abs=0.01)  # its file's
+    assert full_lock < control.min_turning_radius_m < planner.min_turning_radius_m
+    assert control.steering_time_s == pytest.approx(0.15, abs=0.02)
+
+
+def test_sideways_motion_of_a_mecanum_platform_is_derived_from_its_model() -> None:
+    derived = derive_parameters(load_robot("mecanum").model)
+    control = ControlParams.from_dict(derived["control"])
+    assert PlannerParams.from_dict(derived["planner"]).drive == control.drive == "omni"
+    assert control.method == "omni_tracking"
+    assert control.max_side_speed_mps == pytest.approx(0.6)
+    assert SimParams.from_dict(derived["sim"]).max_side_speed_mps == 1.0
+
+
+def _racecar_with(tmp_path: Path, old: str, new: str) -> Path:
+    text = (Path(sim_file).parent / "data/robots/racecar/model.sdf").read_text("utf-8")
+    assert text.count(old) == 1
+    path = tmp_path / "car.sdf"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    return path
+
+
+def test_driven_front_wheels_of_a_car_roll_freely(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Gazebo's examples name both wheels of a side; the base is at the rear axle."""
+    left = "<left_joint>rear_left_wheel</left_joint>"
+    both = "<left_joint>front_left_wheel</left_joint>" + left
+    model = load_robot(_racecar_with(tmp_path, left, both)).model
+    original = load_robot("racecar").model
+    assert base_of(model) == base_of(original)
+    assert drive_wheels(model) == drive_wheels(original)
+    assert "drive of steered wheels (they roll freely)" in caplog.text
+
+
+def test_a_car_that_drives_with_its_front_wheels_only_is_refused(
+    tmp_path: Path,
+) -> None:
+    left = "<left_joint>rear_left_wheel</left_joint>"
+    front = "<left_joint>front_left_wheel</left_joint>"
+    with pytest.raises(FileFormatError, match="not steered, at the rear"):
+        load_robot(_racecar_with(tmp_path, left, front))

@@ -54,12 +54,20 @@ class TopicComparison:
     def same(self) -> bool:
         return not (self.differing or self.missing or self.extra or self.problem)
 
+    @property
+    def is_silent(self) -> bool:
+        """Whether the other recording has no messages on the topic."""
+        return not (self.compared or self.extra or self.problem)
+
 
 @dataclass
 class Comparison:
     topics: list[TopicComparison]
     unexpected: tuple[str, ...] = ()
     """Topics of the other recording only; not counted as a difference."""
+
+    of_others: tuple[str, ...] = ()
+    """Topics on which all messages may be those of other nodes; not compared."""
 
     @property
     def same(self) -> bool:
@@ -72,6 +80,7 @@ def compare(
     *,
     topics: Collection[str] | None = None,
     tolerances: Tolerances | None = None,
+    shared: Collection[str] = (),
     time_tolerance_ns: int = 0,
     start_ns: int | None = None,
     end_ns: int | None = None,
@@ -80,6 +89,8 @@ def compare(
 
     Args:
         topics: names to compare; all expected topics if None.
+        shared: topics on which ``expected`` also has messages of nodes that ``got``
+            does not have: a recording does not state who published a message.
         tolerances: allowed differences of numbers; none by default.
         time_tolerance_ns: allowed difference of the stamps of matched messages.
         start_ns, end_ns: range of stamps to compare; all if None.
@@ -89,13 +100,12 @@ def compare(
         FileFormatError: a recording is damaged.
     """
     wanted = {t.name: t for t in expected.topics if topics is None or t.name in topics}
-    if not wanted:
+    there = {t.name: t for t in got.topics if topics is None or t.name in topics}
+    if not wanted and (topics is None or any(True for _ in got.messages(topics))):
         raise InvalidValueError(
-            "nothing to compare: expected topics are "
-            f"{', '.join(t.name for t in expected.topics) or 'none'}; requested "
-            f"topics are {', '.join(sorted(topics or ())) or 'none'}"
+            "nothing to compare: the expected recording has no messages on "
+            f"{', '.join(sorted(there)) or 'any topic'}; was the node recorded?"
         )
-    there = {t.name: t for t in got.topics}
     found = {
         name: _TopicPairs(topic, there.get(name), tolerances or Tolerances())
         for name, topic in wanted.items()
@@ -110,12 +120,10 @@ def compare(
         pairs.take(side, message)
     for pairs in found.values():
         pairs.expire(None)
-    unexpected = tuple(
-        name
-        for name in there
-        if name not in wanted and (topics is None or name in topics)
-    )
-    return Comparison([pairs.result for pairs in found.values()], unexpected)
+    unexpected = tuple(name for name in there if name not in wanted)
+    of_others = tuple(n for n in found if n in shared and found[n].result.is_silent)
+    compared = [found[name].result for name in found if name not in of_others]
+    return Comparison(compared, unexpected, of_others)
 
 
 def _side(

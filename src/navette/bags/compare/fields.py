@@ -53,7 +53,7 @@ def _compare(
     if isinstance(a, Message):
         _compare_messages(a, b, path, tolerance_of, found)
     elif isinstance(a, str | bytes | bool):
-        if a != b:
+        if b not in (a, tolerance_of(path).stand_in or a):
             found.append(_plain(path, a, b))
     elif isinstance(a, int | float):
         _compare_numbers([a], [b], path, tolerance_of(path), found)

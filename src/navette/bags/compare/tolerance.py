@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from navette.errors import InvalidValueError
 
@@ -13,10 +13,11 @@ _FORMS = "expected VALUE or TOPIC[.FIELD]=VALUE, with VALUE as 0.01 or 0.01:2%"
 @dataclass(frozen=True)
 class Tolerance:
     """``absolute`` in the field's unit; ``share`` of an array's elements may exceed
-    it."""
+    it. A text may always become ``stand_in``, if that is not empty."""
 
     absolute: float = 0.0
     share: float = 0.0
+    stand_in: str = ""
 
 
 EXACT = Tolerance()
@@ -28,9 +29,11 @@ class Tolerances:
 
     A rule's pattern is a topic, or a topic and a field as in
     ``/path.poses[].pose.position.x``; it applies to all fields below. ``*`` matches any
-    text.
+    text. ``stand_in`` is the name of a node that stands for those of the recording: it
+    may replace any text.
     """
 
+    stand_in: str = ""
     rules: list[tuple[str, Tolerance]] = field(default_factory=list)
     _found: dict[str, Tolerance] = field(default_factory=dict, repr=False)
 
@@ -59,7 +62,8 @@ class Tolerances:
         key = f"{topic}.{path}" if path else topic
         if key not in self._found:
             matching = [t for pattern, t in self.rules if _matches(pattern, key)]
-            self._found[key] = matching[-1] if matching else EXACT
+            found = matching[-1] if matching else EXACT
+            self._found[key] = replace(found, stand_in=self.stand_in)
         return self._found[key]
 
 

@@ -89,6 +89,8 @@ def _compare(
     from navette.bags import open_bag
     from navette.bags.compare import compare
 
+    # Nodes that report who publishes a topic name the player.
+    tolerances.stand_in = replayed.player.get_fully_qualified_name()
     golden = options.output.golden
     assert golden is not None, "called to compare"
     with open_bag(golden) as expected, open_bag(record) as got:
@@ -96,6 +98,7 @@ def _compare(
             expected,
             got,
             topics=summary.outputs,
+            shared=[t.name for t in expected.topics if replayed.shares(t)],
             tolerances=tolerances,
             time_tolerance_ns=round(options.output.time_tolerance * 1e9),
             start_ns=replayed.begin_ns,

@@ -26,6 +26,8 @@ def report(
 
 
 def _comparison_lines(comparison: Comparison, begin_ns: int) -> list[str]:
+    if not comparison.topics:
+        return ["no messages of these nodes to compare", *_not_compared(comparison)]
     rows: list[list[str]] = [["", "topic", "compared", "differ", "missing", "extra"]]
     for topic in comparison.topics:
         counts = topic.compared, topic.differing, topic.missing, topic.extra
@@ -35,8 +37,19 @@ def _comparison_lines(comparison: Comparison, begin_ns: int) -> list[str]:
     lines = [head, *map(_coloured, rest, colours)]
     for topic in comparison.topics:
         lines += _topic_lines(topic, begin_ns)
+    return lines + _not_compared(comparison)
+
+
+def _not_compared(comparison: Comparison) -> list[str]:
+    lines = []
     if comparison.unexpected:
         lines.append(f"new topics, not compared: {', '.join(comparison.unexpected)}")
+    if comparison.of_others:
+        topics = ", ".join(comparison.of_others)
+        lines.append(
+            f"not compared: {topics}: other nodes published there too, and a recording "
+            "does not state whose message is whose; in the replay nothing was published"
+        )
     return lines
 
 
@@ -77,6 +90,7 @@ def as_document(
     if comparison is not None:
         document["same"] = comparison.same
         document["new_topics"] = list(comparison.unexpected)
+        document["not_compared"] = list(comparison.of_others)
         document["topics"] = [_topic_document(topic) for topic in comparison.topics]
     return document
 

@@ -7,13 +7,16 @@ from typing import Any
 
 import yaml
 
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, instead_of
 from navette.files.untrusted.budget import DOCUMENT
 from navette.files.untrusted.files import read_bounded
 from navette.files.untrusted.yaml_input import line_of, load_yaml, problem_of
 from navette.geometry import Pose2
 
 MAP_MODES = ("trinary", "scale", "raw")
+# Those of ROS's map_server and Nav2's.
+_NEEDED = ("image", "resolution")
+_KEYS = (*_NEEDED, "origin", "negate", "free_thresh", "occupied_thresh", "mode")
 # Of map_server, for files without them.
 _OCCUPIED, _FREE = 0.65, 0.196
 
@@ -42,7 +45,7 @@ def read_description(path: Path) -> MapDescription:
     mode = values.get("mode", "trinary")
     if mode not in MAP_MODES:
         raise FileFormatError(path, f"mode {mode!r}; known: {', '.join(MAP_MODES)}")
-    image = values.get("image")
+    image = values["image"]
     if not isinstance(image, str) or not image:
         raise FileFormatError(path, "'image' must name a file")
     file = Path(image)
@@ -50,7 +53,7 @@ def read_description(path: Path) -> MapDescription:
     if not isinstance(origin, list) or len(origin) != 3:
         raise FileFormatError(path, f"'origin' is {origin!r}; expected [x, y, yaw]")
     x, y, yaw = (_number(path, "origin", value) for value in origin)
-    resolution = _number(path, "resolution", values.get("resolution"))
+    resolution = _number(path, "resolution", values["resolution"])
     if resolution <= 0:
         raise FileFormatError(path, f"'resolution' is {resolution:g}; must be > 0 m")
     occupied = _number(
@@ -86,7 +89,19 @@ def _mapping(path: Path) -> dict[Any, Any]:
         raise FileFormatError(
             path, "a map file must be a mapping with image, resolution, …"
         )
+    _check_keys(path, values)
     return values
+
+
+def _check_keys(path: Path, values: dict[Any, Any]) -> None:
+    """Check that no key is missing, and that none would have no effect."""
+    for key in map(str, values):
+        if key not in _KEYS:
+            hint = instead_of(key, _KEYS, see_all="wiki.ros.org/map_server")
+            raise FileFormatError(path, f"unknown key {key!r}{hint}")
+    for key in _NEEDED:
+        if key not in values:
+            raise FileFormatError(path, f"{key!r} is missing")
 
 
 def _flag(path: Path, key: str, value: Any) -> bool:

@@ -116,6 +116,8 @@ class MissionNode(StageNode):
         self._map_arrived = self._planner_reported = False
         #: Called when every goal has a result.
         self.on_done: Callable[[], None] | None = None
+        #: Called with a goal of the list that timed out, before it is cancelled.
+        self.on_timed_out: Callable[[Point], None] | None = None
         self._sequence = GoalSequence(
             params.goal_points(),
             timeout_ns=round(params.goal_timeout_s * 1e9),
@@ -177,7 +179,6 @@ class MissionNode(StageNode):
         )
         self._robot.on_planner_status(report)
         self._step()
-        self._send_next()
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message; the path length is updated a few times a second."""
@@ -232,8 +233,10 @@ class MissionNode(StageNode):
         self._robot.poll()
         self._step()
         self._servers.publish_feedback()
+        goal = self._sequence.active
         self._sequence.check(self._now_ns, paused=self._robot.is_paused)
-        self._cancel_timed_out()
+        if goal is not None and self._sequence.active is None:
+            self._cancel_timed_out(goal)
         self._send_next()
 
     def _step(self) -> None:
@@ -366,13 +369,13 @@ class MissionNode(StageNode):
                 self._sequence.skip_rest()
         self._send_next()
 
-    def _cancel_timed_out(self) -> None:
-        """Cancel the list's goal if the list does not wait for it any more."""
-        goal = self._list_goal
-        if goal is not None and self._sequence.active is None:
-            self._list_goal = None
-            if goal.handle is not None:
-                goal.handle.cancel_goal_async()
+    def _cancel_timed_out(self, point: Point) -> None:
+        """Cancel the list's goal: the list does not wait for it any more."""
+        if self.on_timed_out is not None:
+            self.on_timed_out(point)
+        goal, self._list_goal = self._list_goal, None
+        if goal is not None and goal.handle is not None:
+            goal.handle.cancel_goal_async()
 
 
 @dataclass

@@ -26,6 +26,8 @@ FAILURES = frozenset(
         "goal_blocked",
         "goal_outside_map",
         "goal_not_finite",
+        "goal_orientation_invalid",
+        "goal_stamp_invalid",
         "unknown_frame",
         "stuck",
         CANCELED,

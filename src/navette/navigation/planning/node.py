@@ -56,6 +56,13 @@ from navette.runtime.stage.status import status_output
 
 # Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
+# Of an invalid goal, by the reason of the input's check.
+_REFUSALS = {
+    "not_finite": Outcome.GOAL_NOT_FINITE,
+    "out_of_range": Outcome.GOAL_OUTSIDE_MAP,
+    "invalid_orientation": Outcome.GOAL_ORIENTATION_INVALID,
+    "invalid_stamp": Outcome.GOAL_STAMP_INVALID,
+}
 _check_pose = input_check(topics.GOAL_POSE.type)
 _check_point = input_check(topics.GOAL_POINT.type)
 # Age of a path from which the controller's status is that of this path.
@@ -286,10 +293,7 @@ class PlannerNode(MapReaderNode):
         else:
             return
         self._runner.drop()
-        outside = error.reason == "out_of_range"
-        self._navigator.refuse_goal(
-            goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
-        )
+        self._navigator.refuse_goal(goal, _REFUSALS[error.reason])
         self._report(is_logged=True)
         self._publish_path_and_status()
 

@@ -15,6 +15,10 @@ class Outcome(StrEnum):
     GOAL_BLOCKED = "goal_blocked"
     GOAL_OUTSIDE_MAP = "goal_outside_map"
     GOAL_NOT_FINITE = "goal_not_finite"
+    GOAL_ORIENTATION_INVALID = "goal_orientation_invalid"
+    """The goal's quaternion is not of norm 1."""
+
+    GOAL_STAMP_INVALID = "goal_stamp_invalid"
     UNKNOWN_FRAME = "unknown_frame"
     NO_PATH = "no_path"
     """No cells connect start and goal, or the footprint does not fit along any path."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.navigation.missions import TIMED_OUT
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile
 from navette.runtime.stage.commander import NO_COMMANDER, Commander
 
@@ -44,6 +45,7 @@ class MonitorNode(Node):
         super().__init__("monitor", context=context)
         self._on_change = on_change
         self.progress = RunProgress()
+        self._timed_out = ""  # id of a goal whose reports are ignored
         for topic, callback in (
             (topics.PLANNER_STATUS.name, self._on_planner),
             (topics.CONTROL_STATUS.name, self._on_control),
@@ -53,8 +55,22 @@ class MonitorNode(Node):
                 DiagnosticStatus, topic, callback, LATCHED, shared=True
             )
 
+    def on_timed_out(self, goal: tuple[float, float]) -> None:
+        """Show that a goal timed out; the planner reports only its cancellation."""
+        self._timed_out = self.progress.goal_id
+        self.progress = replace(
+            self.progress,
+            goal=goal,
+            state=TIMED_OUT,
+            failed=True,
+            sim_time_s=self.get_clock().now().nanoseconds / 1e9,
+        )
+        self._on_change(self.progress)
+
     def _on_planner(self, status: DiagnosticStatus) -> None:
         values = {item.key: item.value for item in status.values}
+        if self._timed_out and values.get("goal_id") == self._timed_out:
+            return
         before = self.progress
         goal = _number(values, "goal_x"), _number(values, "goal_y")
         has_plan = values.get("plan") != ""  # a planner of one's own may not report it

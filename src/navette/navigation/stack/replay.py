@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navette.bags import BagTopic
 from navette.bags.node import RecorderNode
 from navette.bags.play import PlayOptions, Source
 from navette.bags.play.node import PlayerNode
@@ -123,6 +124,11 @@ class Replay:
     def end_ns(self) -> int:
         """Last stamp of the range."""
         return self.player.player.end_ns
+
+    def shares(self, topic: BagTopic) -> bool:
+        """Return whether other nodes published on a recorded topic of these, too."""
+        own = self.context.graph.endpoints(topic.name, kind=EndpointKind.PUBLISHER)
+        return len(topic.qos) > len(own)
 
     def run(self) -> ReplaySummary:
         """Replay from the first to the last stamp of the range.

@@ -164,6 +164,7 @@ class Simulation:
         self._add_localization()
         located_by = localization_nodes(self.sim.params)
         self.stack = NavigationStack.create(context, self._replacements, located_by)
+        self.stack.missions.on_timed_out = self.monitor.on_timed_out
         frames = {
             name: getattr(self.sim.params, name) for name in ("map_frame", "base_frame")
         }

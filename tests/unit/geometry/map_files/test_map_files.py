@@ -40,6 +40,34 @@ def test_a_pgm_of_map_server(tmp_path: Path) -> None:
     assert (found.resolution, found.origin) == (0.05, Pose2(-1.5, 2.0, 0.0))
 
 
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("reslution", "resolution"),
+        ("free_threshold", "free_thresh"),
+        ("occupied_treshold", "occupied_thresh"),
+        ("negated", "negate"),
+    ],
+)
+def test_a_misspelt_key_is_refused_with_the_nearest_known_one(
+    tmp_path: Path, wrong: str, right: str
+) -> None:
+    path = described(tmp_path, np.zeros((1, 1)), **{wrong: 0.1})
+    expected = f"unknown key '{wrong}'; did you mean '{right}'"
+    with pytest.raises(FileFormatError, match=expected):
+        read_occupancy_map(path)
+
+
+@pytest.mark.parametrize("key", ["image", "resolution"])
+def test_a_missing_key_is_named(tmp_path: Path, key: str) -> None:
+    path = described(tmp_path, np.zeros((1, 1)))
+    values = yaml.safe_load(path.read_text())
+    del values[key]
+    path.write_text(yaml.safe_dump(values))
+    with pytest.raises(FileFormatError, match=f"'{key}' is missing"):
+        read_occupancy_map(path)
+
+
 def test_modes_thresholds_and_negation(tmp_path: Path) -> None:
     pixels = np.array([[0, 64, 128, 192, 255]])
     thresholds = {"occupied_thresh": 0.75, "free_thresh": 0.25}

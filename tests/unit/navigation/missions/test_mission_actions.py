@@ -164,7 +164,12 @@ def test_a_goal_is_driven_to_with_feedback(
 
 @pytest.mark.parametrize(
     ("failure", "code"),
-    [("no_path", 208), ("goal_blocked", 206), ("goal_outside_map", 204)],
+    [
+        ("no_path", 208),
+        ("goal_blocked", 206),
+        ("goal_outside_map", 204),
+        ("goal_orientation_invalid", 200),
+    ],
 )
 def test_a_failure_has_nav2s_code_and_the_reason(
     graph: GraphHarness,

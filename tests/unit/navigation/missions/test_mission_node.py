@@ -111,6 +111,26 @@ def test_no_goal_is_sent_before_map_and_planner_are_available(
     assert len(planner.goals) == 1
 
 
+@pytest.mark.parametrize("map_first", [True, False])
+def test_the_order_of_map_and_status_does_not_change_when_the_first_goal_is_sent(
+    graph: GraphHarness, map_first: bool
+) -> None:
+    """A replay of a recording may deliver both in another order than the run."""
+    mission(graph, goals_m=[1.0, 0.0])
+    graph.collect("/goal_point", PointStamped)
+    logged = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+    waiting = DiagnosticStatus(message="waiting_for_goal")
+    sends = [
+        lambda: send_map(graph),
+        lambda: graph.publish("/planner/status", waiting, latched=True),
+    ]
+    for send in sends if map_first else reversed(sends):
+        send()
+    graph.run_for(0.5)
+    (sent,) = [m for m in logged.messages if m.msg.startswith("goal 1 of 1")]
+    assert sent.stamp.nanosec == 100_000_000
+
+
 def test_what_the_first_goal_waits_for_is_logged_once(graph: GraphHarness) -> None:
     logged = graph.collect("/rosout", "rcl_interfaces/msg/Log")
     mission(graph, goals_m=[1.0, 0.0])
@@ -155,7 +175,10 @@ def test_a_goal_that_takes_too_long_times_out(graph: GraphHarness) -> None:
     FakePlanner(graph, ["following"])
     send_map(graph)
     node = mission(graph, goals_m=[1.0, 0.0], goal_timeout_s=3.0)
+    timed_out: list[tuple[float, float]] = []
+    node.on_timed_out = timed_out.append
     assert graph.run_until(lambda: node.done, 10.0)
+    assert timed_out == [(1.0, 0.0)]
     assert node.outcomes[0].result == "timed_out"
     assert node.outcomes[0].time_s == pytest.approx(3.0, abs=0.11)
 

@@ -10,9 +10,7 @@ from planning_worlds import fill
 
 from navette.geometry import Pose2
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import (
-    TransformStamped,
-)
+from navette.msgs.geometry_msgs.msg import PoseStamped, TransformStamped
 from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
 from navette.navigation.grids import CellWindow, shared_cells
@@ -118,6 +116,28 @@ def test_bad_goals_have_named_results_within_a_second(
     world.send(2.5, 4)
     graph.run_for(0.1)
     assert world.message == "following", "alive"
+
+
+@pytest.mark.parametrize("topic", ["/goal_pose", "/planner/goal_pose"])
+@pytest.mark.parametrize(
+    ("w", "nanosec", "result"),
+    [
+        (5.0, 0, "goal_orientation_invalid"),
+        (math.nan, 0, "goal_not_finite"),
+        (1.0, 2_000_000_000, "goal_stamp_invalid"),
+    ],
+)
+def test_a_malformed_goal_is_refused_with_the_true_reason(
+    graph: GraphHarness, topic: str, w: float, nanosec: int, result: str
+) -> None:
+    world = World(graph).ready()
+    goal = PoseStamped()
+    goal.header.frame_id, goal.header.stamp.nanosec = "map", nanosec
+    goal.pose.position.x, goal.pose.position.y = 2.5, 4.0
+    goal.pose.orientation.w = w
+    graph.publish(topic, goal)
+    graph.run_for(1.0)
+    assert (world.message, world.values["result"]) == (result, result)
 
 
 def test_a_goal_without_a_frame_is_in_the_map_frame(graph: GraphHarness) -> None:

@@ -17,6 +17,34 @@ def status(state: str, **values: str) -> DiagnosticStatus:
     )
 
 
+def test_a_goal_that_timed_out_is_not_shown_as_cancelled() -> None:
+    shown: list[tuple[str, str]] = []
+    with GraphHarness() as graph:
+        monitor = MonitorNode(
+            context=graph.context,
+            on_change=lambda progress: shown.append((progress.goal_id, progress.state)),
+        )
+        graph.add(monitor)
+        publisher = graph.node.create_publisher(
+            DiagnosticStatus, topics.PLANNER_STATUS.name, LATCHED
+        )
+
+        def receive(state: str, goal_id: str) -> None:
+            publisher.publish(
+                status(state, goal_id=goal_id, goal_x="1.0", goal_y="0.0")
+            )
+            graph.run_for(0.1)
+
+        receive("following", "1")
+        monitor.on_timed_out((1.0, 0.0))
+        receive("canceled", "1")
+        receive("canceled", "1")  # a status is repeated
+        receive("following", "2")
+        receive("canceled", "2")
+    states = [("following", "1"), ("timed_out", "1"), ("following", "2")]
+    assert shown == [(i, state) for state, i in [*states, ("canceled", "2")]]
+
+
 def after(*received: DiagnosticStatus) -> RunProgress:
     with GraphHarness() as graph:
         monitor = MonitorNode(context=graph.context, on_change=lambda _: None)

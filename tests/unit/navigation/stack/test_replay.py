@@ -255,6 +255,32 @@ def command(*words: object) -> Any:
     return CliRunner().invoke(app, ["bag", "replay", *map(str, words)])
 
 
+@pytest.fixture(scope="module")
+def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A drive of a simulated robot, with everything recorded."""
+    path = tmp_path_factory.mktemp("drive") / "drive.mcap"
+    words = ["sim", "arena", "--goal", "1,0", "--headless", "--record", str(path)]
+    ended = CliRunner().invoke(app, [*words, "--max-time", "2.0"])
+    assert path.exists(), ended.output
+    return path
+
+
+@pytest.mark.parametrize(
+    ("stage", "line"),
+    [
+        ("missions", "not compared: /path: other nodes published there too"),
+        ("arbiter", "✓  /commander"),
+        ("tracking", "no messages of these nodes to compare"),
+    ],
+)
+def test_a_stage_that_depends_on_the_graph_repeats_an_unmodified_recording(
+    drive: Path, stage: str, line: str
+) -> None:
+    ended = command(drive, "--node", stage, "--compare", drive)
+    assert ended.exit_code == 0, ended.output
+    assert line in ended.stdout
+
+
 def test_the_command_compares(bag: Path, program: str, tmp_path: Path) -> None:
     golden = tmp_path / "golden.mcap"
     made = command(bag, "--node", program, "--record", golden)

@@ -101,6 +101,8 @@ ERROR_CODES = {
     "search_limit": 207,
     "no_path": 208,
     "goal_not_finite": 200,
+    "goal_orientation_invalid": 200,
+    "goal_stamp_invalid": 200,
     "stale_odometry": 102,
     "lost": 102,
     "stuck": 105,
