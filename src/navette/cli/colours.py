@@ -4,5 +4,5 @@ import os
 
 
 def colours_wanted() -> bool:
-    """Whether a terminal's user wants colours: no ``NO_COLOR``, no dumb terminal."""
+    """Whether to print colours to a terminal: no ``NO_COLOR``, no dumb terminal."""
     return "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
