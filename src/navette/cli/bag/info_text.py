@@ -115,7 +115,7 @@ def _compression(summary: BagSummary) -> str:
 
 
 def _table(summary: BagSummary) -> Table:
-    table = new_table("topic", "type", ">messages", ">rate", ">longest gap", "qos")
+    table = new_table("topic", "~type", ">messages", ">rate", ">longest gap", "qos")
     for each in summary.topics[:_MOST_ROWS]:
         table.add_row(
             Text(each.topic.name, style="cyan"),

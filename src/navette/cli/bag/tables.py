@@ -24,7 +24,11 @@ class SafeTable(Table):
     """Escapes control characters of cells, and cuts very long ones."""
 
     def add_row(self, *cells: Any, **options: Any) -> None:
-        super().add_row(*(_cut(_safe(cell)) for cell in cells), **options)
+        safe = [_cut(_safe(cell)) for cell in cells]
+        for k, column in enumerate(self.columns[: len(safe)]):
+            if not column.no_wrap:  # it may be cut, not wrapped
+                safe[k] = Text(str(safe[k]), no_wrap=True, overflow="ellipsis")
+        super().add_row(*safe, **options)
 
 
 def _safe(found: Any) -> Any:
@@ -49,27 +53,32 @@ def open_console() -> Console:
 
 
 def new_table(*names: str) -> Table:
-    """Return a table without borders; a leading ``>`` aligns a column to the right."""
+    """Return a table without borders.
+
+    A leading ``>`` aligns a column to the right; one with a leading ``~`` is cut first
+    where the terminal is narrow.
+    """
     table = SafeTable(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name in names:
         table.add_column(
-            name.removeprefix(">"),
+            name.lstrip(">~"),
             justify="right" if name.startswith(">") else "left",
             header_style="dim",
-            no_wrap=True,
+            no_wrap=not name.startswith("~"),
         )
     return table
 
 
 def show_table(console: Console, table: Table) -> None:
     """Print the table without trailing spaces; rows are cut to a terminal's width."""
+    width = shutil.get_terminal_size().columns if console.is_terminal else _WIDTH
     with console.capture() as capture:
-        console.print(table)
+        console.print(table, width=width)
     for row in capture.get().splitlines():
         line = Text.from_ansi(row)
         line.rstrip()
         if console.is_terminal:
-            line.truncate(shutil.get_terminal_size().columns, overflow="ellipsis")
+            line.truncate(width, overflow="ellipsis")
         console.print(line)
 
 
