@@ -396,7 +396,8 @@ class Slam:
         else:
             self._count_unmatched()
             self.contradicted_in_a_row += self._is_contradicted
-            if self._motion.is_measured:
+            # A robot that was carried must not match elsewhere as its window widens.
+            if self._motion.is_measured and not self._is_contradicted:
                 tracked.reckon(moved.pose, self.params)
             else:
                 tracked.move(moved)

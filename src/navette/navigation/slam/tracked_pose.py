@@ -70,7 +70,7 @@ class TrackedPose:
         self.place(matched.pose, inverted(information))
 
     def move(self, motion: ScanMotion) -> None:
-        """Move by a prediction without odometry; its errors add up scan by scan."""
+        """Move by a prediction whose errors add up scan by scan."""
         self.since_key = _composed(self.since_key, motion)
         self.place(self.pose @ motion.pose, self.predicted(motion))
 
