@@ -18,6 +18,8 @@ _JUMP_MPS, _JUMP_M = 5.0, 2.0
 # Standard deviation of yaw by an IMU, per radian turned.
 _IMU_NOISE = 0.02
 _LONGEST_S = 1.0
+# Standard deviations of no motion, so that a covariance can be inverted.
+_LEAST_M, _LEAST_RAD = 1e-3, 1e-3
 
 
 class ScanMotion(NamedTuple):
@@ -28,10 +30,15 @@ class ScanMotion(NamedTuple):
 
 
 class MotionModel:
-    """Predict motions from odometry, an IMU's yaw, or the velocity before."""
+    """Predict motions from odometry, an IMU's yaw, or the velocity before.
+
+    Attributes:
+        is_measured: whether the odometry measured the motion of the last step.
+    """
 
     def __init__(self, params: SlamParams) -> None:
         self.params = params
+        self.is_measured = False
         self._stamp_ns: int | None = None
         self._odometry: Pose2 | None = None
         self._yaw: float | None = None
@@ -53,12 +60,12 @@ class MotionModel:
         if self._stamp_ns is not None:
             self._seconds = max(0.0, (stamp_ns - self._stamp_ns) / 1e9)
         self._stamp_ns = stamp_ns
-        motion = self.steady()
+        motion, self.is_measured = self.steady(), False
         if before is not None and odom_T_base is not None:
             measured = _between(before, odom_T_base, self.params)
             away = math.hypot(measured.pose.x, measured.pose.y)
             if away < _JUMP_M + _JUMP_MPS * self._seconds:
-                motion = measured
+                motion, self.is_measured = measured, True
         if yaw_before is not None and yaw is not None:
             turn = angle_difference(yaw, yaw_before)
             covariance = motion.covariance.copy()
@@ -94,13 +101,26 @@ def _between(before: Pose2, after: Pose2, params: SlamParams) -> ScanMotion:
 
 
 def motion_covariance(motion: Pose2, params: SlamParams) -> Matrix3:
-    """Return the covariance of a motion by odometry."""
+    """Return the covariance (3, 3) of a motion by odometry between two scans."""
+    floors = params.odometry_floor_m, params.odometry_floor_rad
+    return _odometry_covariance(motion, params, *floors)
+
+
+def section_covariance(motion: Pose2, params: SlamParams) -> Matrix3:
+    """Return the covariance (3, 3) of a section of a motion by odometry alone.
+
+    The errors of a pose that the robot need not move for do not add up.
+    """
+    return _odometry_covariance(motion, params, _LEAST_M, _LEAST_RAD)
+
+
+def _odometry_covariance(
+    motion: Pose2, params: SlamParams, floor_m: float, floor_rad: float
+) -> Matrix3:
     distance, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
-    position = params.odometry_floor_m + params.odometry_noise * distance
+    position = floor_m + params.odometry_noise * distance
     yaw = (
-        params.odometry_floor_rad
-        + params.odometry_noise * turn
-        + params.odometry_yaw_per_m * distance
+        floor_rad + params.odometry_noise * turn + params.odometry_yaw_per_m * distance
     )
     return np.diag([position**2, position**2, yaw**2])
 

@@ -2,8 +2,10 @@
 
 Before the first scan the node publishes nothing. A scan waits for the odometry at its
 stamp; without odometry the node predicts by constant velocity and publishes the pose
-only. When scans stop matching the map, the status is ``lost``: navigation stops, and
-the odometry continues the pose.
+only. Where nothing is in reach of the scanner, the odometry continues the pose, whose
+covariance grows; the status is ``localized`` at the level of a warning. When scans
+contradict the map, or the pose is too uncertain, the status is ``lost``: navigation
+stops.
 """
 
 from collections import deque
@@ -27,6 +29,7 @@ from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import grid_to_message, upward_of
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.navigation.slam.graph_file import read_graph
+from navette.navigation.slam.match_status import MatchStatus
 from navette.navigation.slam.messages import planar_scan
 from navette.navigation.slam.params import MAPPING, SlamParams
 from navette.navigation.slam.rendering import MapRenderer, MapScan
@@ -53,12 +56,37 @@ _EARLY = 0.8
 _CHOICE = 2
 # States on the topic of the localization's status; navigation stops unless localized.
 _WAITING_FOR_SCANS, _LOCALIZED, _LOST = "localizing", "localized", "lost"
+# Scans in a row without a match that are reported: a robot passes single gaps.
+_REPORTED = 10
+# Between two logs that scans do not match or match again: along the limit of the
+# scanner's range they alternate.
+_LOG_PERIOD_S = 10.0
+_REASONS = {
+    MatchStatus.NO_ECHOES: "nothing is in reach of the scanner; odometry alone",
+    MatchStatus.NOTHING_MAPPED: "nothing mapped is in sight; odometry alone",
+    MatchStatus.LOST_CONTRADICTED: "the scans contradict the map",
+    MatchStatus.LOST_UNCERTAIN: "the position is too uncertain without matching scans",
+    MatchStatus.LOST_NO_ECHOES: "nothing is in reach of the scanner",
+    MatchStatus.LOST_NOWHERE: "the scans fit nowhere in the map",
+    MatchStatus.LOST_AMBIGUOUS: "the scans fit at several places of the map",
+}
+_LEVELS = {
+    _WAITING_FOR_SCANS: StatusReporter.WARN,
+    _LOCALIZED: StatusReporter.OK,
+    _LOST: StatusReporter.ERROR,
+}
+_TO_MAPPED = "Drive by hand to a place that is mapped"
+_ADVICE = {
+    MatchStatus.LOST_AMBIGUOUS: "Drive by hand until the robot sees what is at one of "
+    "these places only, or publish its pose on /initialpose",
+}
 
 
 class _Found(NamedTuple):
     """Where the robot is by a scan, and the map then."""
 
     estimate: SlamEstimate
+    match_status: MatchStatus
     unmatched_in_a_row: int
     key_scans: int
     loop_closures: int
@@ -224,6 +252,7 @@ class SlamNode(StageNode):
 
     def _set_slam(self, slam: Slam) -> None:
         self._slam = slam
+        self._reason = ""  # why no scan matches, as reported last
         self._renderer = MapRenderer(self.params)
         self.key_scans, self._drawn_keys = len(slam.graph), 0
         self._status.report(_WAITING_FOR_SCANS, StatusReporter.WARN)
@@ -306,29 +335,53 @@ class SlamNode(StageNode):
             raise InvalidInputError("no_transform", str(error)) from None
 
     def _report(self, found: _Found) -> None:
-        """Report whether the scans agree with the map; log when that changes."""
-        row, before = found.unmatched_in_a_row, self._status.state
-        state = before
-        if row >= self.params.lost_scans:
-            state = _LOST
-        elif row == 0:
-            state = _LOCALIZED
-        if state == _LOST and before != _LOST:
-            self.get_logger().error(
-                f"lost: {row} scans in a row do not match the map; navigation stops. "
-                "Drive by hand to a place that is mapped"
-            )
-        elif state == _LOCALIZED and before == _LOST:
-            self.get_logger().info("localized again")
-        level = StatusReporter.OK if state == _LOCALIZED else StatusReporter.ERROR
+        """Report how the pose is known; log when that changes."""
+        match_status, state = found.match_status, self._state_of(found)
+        reason = ""
+        if state != _LOCALIZED or found.unmatched_in_a_row >= _REPORTED:
+            reason = _REASONS.get(match_status, "")
+        self._log_change(state, match_status, reason)
+        level = _LEVELS[state]
+        if reason and state == _LOCALIZED:
+            level = StatusReporter.WARN
+        self._reason = reason
         spread = float(np.sqrt(np.trace(found.estimate.covariance[:2, :2])))
         self._status.report(
             state,
             level,
+            cause=reason,
             position_stddev_m=spread,
             key_scans=found.key_scans,
             loop_closures=found.loop_closures,
+            **({"reason": reason} if reason else {}),
         )
+
+    def _state_of(self, found: _Found) -> str:
+        match_status = found.match_status
+        if match_status.is_lost:
+            return _LOST
+        if match_status is MatchStatus.STARTING:
+            return _WAITING_FOR_SCANS
+        if match_status is MatchStatus.CONTRADICTED:
+            return self._status.state
+        return _LOCALIZED
+
+    def _log_change(self, state: str, match_status: MatchStatus, reason: str) -> None:
+        before, log = self._status.state, self.get_logger()
+        if state == _LOST and before != _LOST:
+            log.error(
+                f"lost: {reason}; navigation stops. "
+                f"{_ADVICE.get(match_status, _TO_MAPPED)}"
+            )
+        elif state == _LOCALIZED and before == _LOST:
+            log.info("localized again")
+        elif reason and not self._reason:
+            log.warning(
+                f"{reason}: the pose becomes less certain until scans match again",
+                throttle_duration_sec=_LOG_PERIOD_S,
+            )
+        elif self._reason and not reason:
+            log.info("scans match again", throttle_duration_sec=_LOG_PERIOD_S)
 
     def _publish_pose(self, stamp_ns: int, estimate: SlamEstimate) -> None:
         message = PoseWithCovarianceStamped(
@@ -398,7 +451,12 @@ def _found(slam: Slam, estimate: SlamEstimate | None) -> _Found | None:
         for node, key in enumerate(graph.keys if estimate.is_corrected else ())
     ]
     return _Found(
-        estimate, slam.unmatched_in_a_row, len(graph), slam.loop_closures, trajectory
+        estimate,
+        slam.match_status,
+        slam.unmatched_in_a_row,
+        len(graph),
+        slam.loop_closures,
+        trajectory,
     )
 
 

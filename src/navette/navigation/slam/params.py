@@ -42,9 +42,17 @@ class SlamParams(FrameParams):
     )
     lost_scans: int = param(
         20,
-        "scans in a row without a match after which the robot is lost",
+        "scans that contradict the map, without a match between them, after which the "
+        "robot is lost; without odometry, or at the start in a known map: scans "
+        "without a match",
         at_least=1,
         at_most=10_000,
+    )
+    lost_stddev_m: float = param(
+        10.0,
+        "standard deviation of the position beyond which the robot is lost, when "
+        "nothing is in reach of the scanner and the odometry alone moves the pose",
+        above=0.0,
     )
 
     # Scans

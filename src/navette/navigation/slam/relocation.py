@@ -1,52 +1,123 @@
 """Pose in a known map without any idea where: every submap is searched whole."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from navette.geometry import Pose2
 from navette.navigation.slam.correlative import SearchWindow, search
+from navette.navigation.slam.motion import Matrix3
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.refinement import refine
-from navette.navigation.slam.scan_graph import ScanChunk, ScanGraph
-from navette.navigation.slam.scan_points import Points, thinned
-from navette.navigation.slam.tracking import LocalMap
+from navette.navigation.slam.scan_graph import KeyScan, ScanChunk, ScanGraph
+from navette.navigation.slam.scan_points import LEAST_POINTS, Points, thinned
+from navette.navigation.slam.tracking import LocalMap, make_local_map
+from navette.navigation.slam.visibility import SensorView
 
-# Least overlap of the place found, and by how much it must exceed that of others.
+# Least overlap of the place found, and by how much its evidence must exceed that of
+# others.
 _LEAST, _MARGIN = 0.7, 0.08
+# What a contradicting point takes from the evidence of matching ones.
+_CONTRADICTING = 3.0
 # Places nearer to each other than this are one.
 _APART = SearchWindow(1.0, 0.5)
 # Share of the best score from which another place of a submap is compared.
 _RIVAL = 0.8
-_SAMPLE, _LEAST_POINTS = 400, 10
+_SAMPLE = 400
 _LEVELS = 7
 _REACH_M = 2.0
 
 
-def locate(graph: ScanGraph, points: Points, params: SlamParams) -> Pose2 | None:
-    """Return map_T_base of scans if exactly one place of the map looks like them.
+class Relocation(NamedTuple):
+    """What a search of the whole map found.
 
-    In rooms and corridors that look alike, or that fit after a half turn, more scans
-    are needed.
+    Attributes:
+        pose: map_T_base; None: not found.
+        is_ambiguous: whether it was not found because several places look alike.
+    """
+
+    pose: Pose2 | None
+    is_ambiguous: bool = False
+
+
+def locate(
+    graph: ScanGraph, points: Points, newest: KeyScan, params: SlamParams
+) -> Relocation:
+    """Return where scans were taken, if exactly one place of the map looks like them.
+
+    A place that contradicts the newest scan looks unlike it, even where most surfaces
+    fit: rooms have walls in common. In rooms and corridors that look alike, or that fit
+    after a half turn, more scans are needed.
 
     Args:
         graph: the known map.
         points: (N, 4) of the scans in the frame of the newest base.
+        newest: the newest of the scans.
         params: as of the SLAM.
     """
-    if len(points) < _LEAST_POINTS:
-        return None
+    if len(points) < LEAST_POINTS:
+        return Relocation(None)
     points = thinned(points, _SAMPLE)
-    found: list[tuple[float, Pose2]] = []
+    places: list[tuple[float, Pose2]] = []
     for chunk in _chunks(graph, params.submap_scans):
-        found += _places(graph, chunk, points, params)
-    if not found:
-        return None
-    best, pose = max(found, key=lambda each: each[0])
-    rivals = [overlap for overlap, other in found if _is_apart(pose, other)]
-    if best < _LEAST or max(rivals, default=0.0) > best - _MARGIN:
-        return None
-    return pose
+        places += _places(graph, chunk, points, params)
+    judged = _judged(graph, places, newest, params)
+    if not judged:
+        return Relocation(None)
+    best, pose = max(judged, key=lambda each: each[0])
+    rivals = [evidence for evidence, other in judged if _is_apart(pose, other)]
+    if max(rivals, default=-math.inf) > best - _MARGIN:
+        return Relocation(None, is_ambiguous=True)
+    return Relocation(pose)
+
+
+def anywhere_covariance(graph: ScanGraph, pose: Pose2) -> Matrix3:
+    """Return the covariance (3, 3) about a pose of a robot that may be anywhere.
+
+    The distribution is uniform over the rectangle around the key scans of the map, and
+    over all headings.
+    """
+    places = graph.poses[:, :2]
+    low, high = places.min(axis=0) - _REACH_M, places.max(axis=0) + _REACH_M
+    away = (low + high) / 2.0 - (pose.x, pose.y)
+    covariance = np.diag([*((high - low) ** 2 / 12.0), math.pi**2 / 3.0])
+    covariance[:2, :2] += np.outer(away, away)
+    return covariance
+
+
+def evidence_of(overlap: float, contradicted: float) -> float:
+    """Return the evidence for a place: shares of points that match and contradict."""
+    return overlap - _CONTRADICTING * contradicted
+
+
+def _judged(
+    graph: ScanGraph,
+    places: list[tuple[float, Pose2]],
+    newest: KeyScan,
+    params: SlamParams,
+) -> list[tuple[float, Pose2]]:
+    """Return evidence and map_T_base of the places that the best may be mistaken for.
+
+    Args:
+        graph: the known map.
+        places: overlap and map_T_base.
+        newest: the scan that may contradict them.
+        params: as of the SLAM.
+    """
+    view = SensorView(newest.scan, newest.base_T_sensor)
+    judged: list[tuple[float, Pose2]] = []
+    best = -math.inf
+    for overlap, pose in sorted(places, key=lambda each: -each[0]):
+        # Evidence is at most the overlap.
+        if overlap < max(_LEAST, best - _MARGIN):
+            break
+        nodes = graph.nearest(pose, 2 * params.local_scans)
+        local = make_local_map(graph, nodes, pose, params)
+        evidence = evidence_of(overlap, local.contradiction(view, newest.points, pose))
+        judged.append((evidence, pose))
+        best = max(best, evidence)
+    return judged
 
 
 def _places(

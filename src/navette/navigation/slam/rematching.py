@@ -12,8 +12,8 @@ from navette.navigation.slam.correlative import SearchWindow, search
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.refinement import Refined, refine
 from navette.navigation.slam.scan_graph import ScanGraph
-from navette.navigation.slam.scan_points import Points
-from navette.navigation.slam.tracking import LEAST_POINTS, LocalMap
+from navette.navigation.slam.scan_points import LEAST_POINTS, Points
+from navette.navigation.slam.tracking import LocalMap
 
 # Fit from which a scan is left where it is, and what another place must gain.
 _GOOD, _GAIN = 0.7, 0.1

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from copy import copy
 from dataclasses import dataclass
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from navette.geometry import Pose2
 from navette.navigation.grids import PlanarScan
 from navette.navigation.slam.pose_graph import GraphEdge, optimise
 from navette.navigation.slam.relative_covariance import EdgeList, covariances_from
-from navette.navigation.slam.scan_points import Points, moved_points
+from navette.navigation.slam.scan_points import LEAST_POINTS, Points, moved_points
 
 Matrix = NDArray[np.float64]
 
@@ -31,6 +32,11 @@ class KeyScan:
     base_T_sensor: Pose2
     points: Points
     """(N, 4) in the base frame"""
+
+    @property
+    def is_informative(self) -> bool:
+        """Whether the scan has enough echoes to be matched, or matched with."""
+        return len(self.points) >= LEAST_POINTS
 
 
 class ScanChunk(NamedTuple):
@@ -125,10 +131,21 @@ class ScanGraph:
         return np.column_stack([x, y])
 
     def nearest(self, pose: Pose2, count: int) -> list[int]:
-        """Return the key scans that look at what a robot at ``pose`` looks at."""
+        """Return the key scans that look at what a robot at ``pose`` looks at.
+
+        Scans without echoes look at nothing.
+        """
         here = np.array(pose.apply(np.array([[_AHEAD_M, 0.0]]))[0])
         away = np.linalg.norm(self.view_centers() - here, axis=1)
-        return sorted(np.argsort(away, kind="stable")[:count].tolist())
+        order = (int(node) for node in np.argsort(away, kind="stable"))
+        seeing = (node for node in order if self.keys[node].is_informative)
+        return sorted(islice(seeing, count))
+
+    def newest(self, first: int, count: int) -> list[int]:
+        """Return the newest key scans with echoes, from node ``first`` on."""
+        nodes = range(len(self.keys) - 1, first - 1, -1)
+        seeing = (node for node in nodes if self.keys[node].is_informative)
+        return sorted(islice(seeing, count))
 
     def points(self, nodes: Iterable[int], frame: Pose2 | None = None) -> Points:
         """Return the points of key scans in the map, or in a frame given in the map."""

@@ -13,6 +13,9 @@ from navette.navigation.grids import PlanarScan
 Points = NDArray[np.float64]
 """(N, 4): x, y, m, and the unit normal towards the sensor; 0, 0 without a surface."""
 
+LEAST_POINTS = 10
+"""Points without which a scan is not matched."""
+
 # Beams on each side of a point that its normal is fitted to, and how far away they may
 # be: so far that range noise of 2 cm turns a normal by a few degrees only.
 _SIDE_BEAMS = 6

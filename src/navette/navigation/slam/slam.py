@@ -11,6 +11,7 @@ from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec, PlanarScan
 from navette.navigation.slam.global_refinement import refine_all
 from navette.navigation.slam.loop_closure import LoopFinder, softened
+from navette.navigation.slam.match_status import MatchStatus
 from navette.navigation.slam.motion import (
     HERE,
     Matrix3,
@@ -23,11 +24,17 @@ from navette.navigation.slam.motion import (
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.pose_graph import GraphEdge, mahalanobis
 from navette.navigation.slam.refinement import PosePrior, Refined
-from navette.navigation.slam.relocation import locate
+from navette.navigation.slam.relocation import (
+    Relocation,
+    anywhere_covariance,
+    evidence_of,
+    locate,
+)
 from navette.navigation.slam.rendering import MapScan, render
 from navette.navigation.slam.scan_graph import KeyScan, ScanGraph
 from navette.navigation.slam.scan_points import scan_points
-from navette.navigation.slam.tracking import DOUBTFUL, LocalMap, match
+from navette.navigation.slam.tracked_pose import STILL, TrackedPose
+from navette.navigation.slam.tracking import DOUBTFUL, make_local_map, match
 from navette.navigation.slam.visibility import SensorView
 
 # Uncertainty of the first pose, which is the map's origin.
@@ -36,8 +43,8 @@ _START = np.diag([1e-6, 1e-6, 1e-6])
 _PLACED = np.diag([0.3**2, 0.3**2, 0.2**2])
 # What the errors that the scans of a local map share add to a match.
 _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
-# What a contradicting point takes from the evidence of matching ones.
-_CONTRADICTING = 3.0
+# Of a match with a scan before a stretch without matches, so that it can be inverted.
+_WEAKEST = 0.01 * np.eye(3)
 # What another motion must gain where the odometry is doubted.
 _GAIN = 0.15
 # Standard deviation of a predicted motion beyond which it replaces no odometry, m.
@@ -80,8 +87,9 @@ class Slam:
     scans; after enough motion, keep it as a key scan; search for places seen before;
     optimise the pose graph where one is found.
 
-    A robot whose scans contradict the map has been moved: it is searched for in the
-    whole map, and what it sees meanwhile is not mapped.
+    A scan without echoes measures nothing: the odometry moves the pose, which becomes
+    less certain. A robot whose scans contradict the map has been moved: it is searched
+    for in the whole map, and what it sees meanwhile is not mapped.
 
     Args:
         params: noise, distances and limits.
@@ -109,6 +117,8 @@ class Slam:
         # Whether the newest scan contradicts the map where the robot should be.
         self._is_contradicted = False
         self._contradicted = 0.0  # share of its points
+        # What the last search of the whole map showed.
+        self._search = MatchStatus.LOST_NOWHERE
         # A map of what the robot has seen since its place is unknown.
         self._scout: Slam | None = None
         self._finder = LoopFinder(params)
@@ -117,16 +127,17 @@ class Slam:
         self._track: deque[_Tracked] = deque(maxlen=trajectory_length)
         # The key scan that the newest poses are relative to.
         self._anchor = 0
+        # The newest key scan that scans are matched with.
+        self._reference = 0
         self._start = start
-        self._pose = HERE if start is None else start
-        # Of the pose, relative to the key scans around it, in the map's axes.
-        self._covariance: Matrix3 = _START
-        # Of the newest key scan, relative to the map's origin.
+        self._tracked = TrackedPose(HERE if start is None else start, _START)
+        # Of the newest key scan and of the reference, relative to the map's origin.
         self._key_covariance: Matrix3 = np.zeros((3, 3))
-        # Since the newest key scan, without matching.
-        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
+        self._reference_covariance: Matrix3 = np.zeros((3, 3))
+        self.match_status = MatchStatus.STARTING
         self.unmatched = 0
         self.unmatched_in_a_row = 0
+        self.contradicted_in_a_row = 0
 
     def add(
         self,
@@ -160,15 +171,16 @@ class Slam:
             self._begin(key, motion, odom_T_base, yaw)
             return self._estimate(stamp_ns, self._is_located)
         matched = self._locate(key, motion)
+        loss = self._loss(key, matched)
         is_corrected = False
-        if self._is_contradicted:
-            if self.unmatched_in_a_row >= params.lost_scans:
-                self._lose()
-        elif self._is_far():
+        if loss is not None:
+            self._lose(loss)
+        elif not self._is_contradicted and self._is_far():
             if self.is_mapping:
-                self._keep(key, matched)
-                is_corrected = self._close_loops()
+                is_corrected = self._keep(key, matched)
+                is_corrected |= self._close_loops()
             else:
+                self._tracked.note_key()
                 self._rebuild_local_map()
         return self._estimate(stamp_ns, matched is not None, is_corrected)
 
@@ -180,24 +192,24 @@ class Slam:
         if odom_T_base is None or not self._is_located:
             return None
         motion = self._motion.by_odometry(odom_T_base)
-        covariance = moved_covariance(
-            self._key_covariance + self._covariance, self._pose, motion
-        )
+        pose = self._tracked.pose
+        covariance = moved_covariance(self._covariance_in_map(), pose, motion)
         return SlamEstimate(
-            self._pose @ motion.pose, covariance, is_matched=False, is_corrected=False
+            pose @ motion.pose, covariance, is_matched=False, is_corrected=False
         )
 
     def emptied(self) -> "Slam":
         """Return a SLAM without a map; its first scan is where the robot is."""
-        fresh = Slam(self.params, self._pose, trajectory_length=self._track.maxlen)
+        length = self._track.maxlen
+        fresh = Slam(self.params, self._tracked.pose, trajectory_length=length)
         fresh._motion = self._motion
         return fresh
 
     def place(self, pose: Pose2) -> None:
         """Place the robot in a known map, roughly; the next scan finds it exactly."""
         if self._known:
-            self._lose()
-            self._start = pose
+            self._lose(MatchStatus.STARTING)
+            self._start, self.unmatched_in_a_row = pose, 0
 
     def refine(self) -> None:
         """Optimise all poses jointly, at the end of a run or before a map is saved."""
@@ -233,43 +245,85 @@ class Slam:
             for node, key in enumerate(self.graph.keys)
         ]
 
-    def _lose(self) -> None:
+    def _lose(self, match_status: MatchStatus) -> None:
         """Search for the robot from now on; all that is mapped is the known map."""
         self._known = len(self.graph)
         self._is_located, self._start, self._scout = False, None, None
+        self.match_status = match_status
 
     def _begin(
         self, key: KeyScan, motion: ScanMotion, odom: Pose2 | None, yaw: float | None
     ) -> None:
         """Start a map at the first scan, or find the scan in the known map."""
-        self._pose = self._pose @ motion.pose
+        tracked = self._tracked
+        tracked.place(tracked.pose @ motion.pose, tracked.covariance)
         if not self._known:
-            self._is_located = True
+            self._note_located(key)
             self._keep(key, None)
             return
         if self._start is None:
-            start = self._searched(key, odom, yaw)
+            matched = self._found(key, odom, yaw)
         else:
-            start = self._start = self._start @ motion.pose
-        matched = None if start is None else self._placed(key, start)
-        if self._start is None and self._is_claimed_too_early(matched):
-            matched = None
+            self._start = self._start @ motion.pose
+            if not key.is_informative:
+                self._reckon_from(self._start, key)
+                return
+            matched = self._placed(key, self._start)
         if matched is None:
-            self._count_unmatched()
-            if self.unmatched_in_a_row >= self.params.lost_scans:
-                self._start = None  # it was wrong
+            self._note_unlocated()
             return
+        self._note_located(key)
+        covariance = inverted(inverted(_PLACED) + matched.information)
+        self._tracked.place(matched.pose, covariance)
+        self._join(key, matched.information)
+
+    def _note_located(self, key: KeyScan) -> None:
         self._is_located, self._is_contradicted = True, False
-        self._scout, self.unmatched_in_a_row = None, 0
-        self._pose = matched.pose
-        self._covariance = inverted(inverted(_PLACED) + matched.information)
-        if self.is_mapping and len(self.graph) == self._known:
-            self._join(key, matched)
+        self._scout = None
+        self.unmatched_in_a_row = self.contradicted_in_a_row = 0
+        self.match_status = (
+            MatchStatus.MATCHED if key.is_informative else MatchStatus.NO_ECHOES
+        )
+
+    def _note_unlocated(self) -> None:
+        """Search the whole map when scans do not match around the start."""
+        self._count_unmatched()
+        is_lost = self.unmatched_in_a_row >= self.params.lost_scans
+        if not (is_lost or self.match_status.is_lost):
+            return
+        if self._start is None:
+            self.match_status = self._search
+        else:
+            self.match_status = MatchStatus.LOST_CONTRADICTED
+            self._start = None  # it was wrong
+
+    def _reckon_from(self, start: Pose2, key: KeyScan) -> None:
+        """Begin at a start pose that no scan can confirm where nothing is in reach."""
+        self._note_located(key)
+        self._tracked.place(start, _PLACED)
         self._rebuild_local_map()
+        self._join(key, np.zeros((3, 3)))
+
+    def _found(
+        self, key: KeyScan, odom: Pose2 | None, yaw: float | None
+    ) -> Refined | None:
+        """Return the match at the place that a search of the whole map finds."""
+        relocation = self._searched(key, odom, yaw)
+        if relocation is None:
+            return None
+        self._search = MatchStatus.LOST_NOWHERE
+        if not key.is_informative:
+            self._search = MatchStatus.LOST_NO_ECHOES
+        elif relocation.is_ambiguous:
+            self._search = MatchStatus.LOST_AMBIGUOUS
+        if relocation.pose is None:
+            return None
+        matched = self._placed(key, relocation.pose)
+        return None if self._is_claimed_too_early(matched) else matched
 
     def _searched(
         self, key: KeyScan, odom: Pose2 | None, yaw: float | None
-    ) -> Pose2 | None:
+    ) -> Relocation | None:
         """Search the whole map for the newest scans, after each new key scan."""
         scout = self._scout
         if scout is None or scout.unmatched_in_a_row:
@@ -283,15 +337,14 @@ class Slam:
             return None
         newest = range(max(0, count - _SCOUTED), count)
         points = scout.graph.points(newest, found.map_T_base)
-        return locate(self.graph, points, self.params)
+        return locate(self.graph, points, key, self.params)
 
     def _placed(self, key: KeyScan, start: Pose2) -> Refined | None:
         """Match a scan with the map around a start pose; None: it does not fit."""
-        before = self._pose, self._covariance
-        self._pose, self._covariance = start, _PLACED
+        before, self._tracked = self._tracked, TrackedPose(start, _PLACED)
         self._rebuild_local_map()
-        matched = self._matched(key, ScanMotion(HERE, np.zeros((3, 3))))
-        self._pose, self._covariance = before
+        matched = self._matched(key, STILL)
+        self._tracked = before
         if matched is None or matched.overlap < DOUBTFUL:
             return None
         return matched
@@ -304,20 +357,27 @@ class Slam:
         """
         if matched is None:
             return False
-        return matched.overlap - _CONTRADICTING * self._contradicted < DOUBTFUL
+        return evidence_of(matched.overlap, self._contradicted) < DOUBTFUL
 
-    def _join(self, key: KeyScan, matched: Refined) -> None:
-        """Connect the first key scan of a session to the known map."""
-        near = self._anchor
-        there = self.graph.pose(near)
-        node = self.graph.insert(key, self._pose, starts_session=True)
-        turn = rotation3(there.yaw)
-        information = turn.T @ (matched.information + inverted(_PLACED)) @ turn
-        edge = GraphEdge(
-            near, node, there.inverse() @ self._pose, softened(information, _FLOOR)
-        )
-        self.graph.connect([edge])
-        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
+    def _join(self, key: KeyScan, information: Matrix3) -> None:
+        """Connect the first key scan of a session to the known map.
+
+        Args:
+            key: the scan; it is kept if the map grows.
+            information: (3, 3) of its match, in the map's axes.
+        """
+        if self.is_mapping and len(self.graph) == self._known:
+            near, pose = self._anchor, self._tracked.pose
+            there = self.graph.pose(near)
+            node = self.graph.insert(key, pose, starts_session=True)
+            turn = rotation3(there.yaw)
+            total = turn.T @ (information + inverted(_PLACED)) @ turn
+            edge = GraphEdge(
+                near, node, there.inverse() @ pose, softened(total, _FLOOR)
+            )
+            self.graph.connect([edge])
+            self._tracked.note_key()
+        self._rebuild_local_map()
 
     def _count_unmatched(self) -> None:
         self.unmatched += 1
@@ -325,65 +385,113 @@ class Slam:
 
     def _locate(self, key: KeyScan, motion: ScanMotion) -> Refined | None:
         """Match a scan and move the pose; without a match, by the motion alone."""
-        before = self._pose
-        moved, matched = motion, self._matched(key, motion)
+        tracked, before = self._tracked, self._tracked.pose
+        self._is_contradicted = False
+        moved, matched = motion, None
+        if key.is_informative:
+            moved, matched = self._best_match(key, motion)
+        if matched is not None:
+            self.unmatched_in_a_row = self.contradicted_in_a_row = 0
+            tracked.match(moved, matched)
+        else:
+            self._count_unmatched()
+            self.contradicted_in_a_row += self._is_contradicted
+            # A robot that was carried must not match elsewhere as its window widens.
+            if self._motion.is_measured and not self._is_contradicted:
+                tracked.reckon(moved.pose, self.params)
+            else:
+                tracked.move(moved)
+        self._motion.record(before.inverse() @ tracked.pose)
+        return matched
+
+    def _best_match(
+        self, key: KeyScan, motion: ScanMotion
+    ) -> tuple[ScanMotion, Refined | None]:
+        """Return the match, and the motion that led to it.
+
+        Where the scan fits badly after the motion of the odometry, the velocity before
+        may fit better: the odometry jumped.
+        """
+        matched = self._matched(key, motion)
         is_contradicted = self._is_contradicted
         if matched is None or matched.overlap < DOUBTFUL:
             steady = self._motion.steady()
             other = self._matched(key, steady) if _is_sure(steady) else None
             gain = DOUBTFUL if matched is None else matched.overlap + _GAIN
             if other is not None and other.overlap > gain:
-                moved, matched = steady, other
+                motion, matched = steady, other
         self._is_contradicted = matched is None and is_contradicted
-        covariance = moved_covariance(self._covariance, before, moved)
-        since = self._since_key
-        self._since_key = ScanMotion(
-            since.pose @ moved.pose,
-            moved_covariance(since.covariance, since.pose, moved),
-        )
-        if matched is None:
-            self._count_unmatched()
-            self._pose, self._covariance = before @ moved.pose, covariance
-        else:
-            self.unmatched_in_a_row = 0
-            self._pose = matched.pose
-            information = inverted(covariance) + matched.information
-            self._covariance = inverted(information)
-        self._motion.record(before.inverse() @ self._pose)
-        return matched
+        return motion, matched
 
     def _matched(self, key: KeyScan, motion: ScanMotion) -> Refined | None:
-        covariance = moved_covariance(self._covariance, self._pose, motion)
-        prior = PosePrior(self._pose @ motion.pose, inverted(covariance))
+        information = inverted(self._tracked.predicted(motion))
+        prior = PosePrior(self._tracked.pose @ motion.pose, information)
         found = match(self._local, key.points, prior, self.params)
         pose = prior.pose if found is None else found.pose
         placed = SensorView(key.scan, key.base_T_sensor)
         share = self._local.contradiction(placed, key.points, pose)
         self._contradicted = share
         self._is_contradicted = share > self.params.max_contradicted
-        return None if self._is_contradicted else found
+        # In the wide window after a stretch by odometry alone, parts fit by chance.
+        least = DOUBTFUL if self.match_status is MatchStatus.NO_ECHOES else 0.0
+        if self._is_contradicted or found is None or found.overlap < least:
+            return None
+        return found
+
+    def _loss(self, key: KeyScan, matched: Refined | None) -> MatchStatus | None:
+        """Note what a scan shows; return why the robot is lost, or None."""
+        params = self.params
+        self.match_status = self._status_of(key, matched)
+        if self._is_contradicted and self.contradicted_in_a_row >= params.lost_scans:
+            return MatchStatus.LOST_CONTRADICTED
+        deviation_m = math.sqrt(np.trace(self._tracked.covariance[:2, :2]))
+        if matched is None and deviation_m > params.lost_stddev_m:
+            return MatchStatus.LOST_UNCERTAIN
+        return None
+
+    def _status_of(self, key: KeyScan, matched: Refined | None) -> MatchStatus:
+        if matched is not None:
+            return MatchStatus.MATCHED
+        if self._is_contradicted:
+            return MatchStatus.CONTRADICTED
+        is_long = self.unmatched_in_a_row >= self.params.lost_scans
+        if is_long and not self._motion.is_measured:
+            return MatchStatus.LOST_UNCERTAIN
+        if key.is_informative:
+            return MatchStatus.NOTHING_MAPPED
+        return MatchStatus.NO_ECHOES
 
     def _is_far(self) -> bool:
         """Whether the robot moved enough since the newest key scan."""
-        moved = self._last_key.inverse() @ self._pose
+        moved = self._last_key.inverse() @ self._tracked.pose
         return (
             math.hypot(moved.x, moved.y) > self.params.key_distance_m
             or abs(moved.yaw) > self.params.key_angle_rad
         )
 
-    def _keep(self, key: KeyScan, matched: Refined | None) -> None:
-        """Make a scan a key scan, connected to the one before."""
-        node = self.graph.insert(key, self._pose, starts_session=not len(self.graph))
-        if node:
+    def _keep(self, key: KeyScan, matched: Refined | None) -> bool:
+        """Make a scan a key scan, connected to the ones before.
+
+        Returns whether earlier poses changed.
+        """
+        pose = self._tracked.pose
+        node = self.graph.insert(key, pose, starts_session=not len(self.graph))
+        is_corrected = False
+        if matched is not None and self._reference != node - 1:
+            is_corrected = self._reconnect(node, matched)
+        elif node:
             self._connect(node, matched)
-        self._since_key = ScanMotion(HERE, np.zeros((3, 3)))
-        self._rebuild_local_map()
+        self._tracked.note_key()
+        if is_corrected:
+            self._continue_from_graph()
+        else:
+            self._rebuild_local_map()
+        return is_corrected
 
     def _connect(self, node: int, matched: Refined | None) -> None:
         last = self.graph.pose(node - 1)
-        moved = last.inverse() @ self._pose
-        since = self._since_key
-        information = inverted(since.covariance)
+        moved = last.inverse() @ self._tracked.pose
+        information = inverted(self._tracked.since_key.covariance)
         if matched is not None:
             turn = rotation3(last.yaw)
             information = information + turn.T @ matched.information @ turn
@@ -391,6 +499,33 @@ class Slam:
         self.graph.connect([edge])
         step = ScanMotion(moved, inverted(edge.information))
         self._key_covariance = moved_covariance(self._key_covariance, last, step)
+
+    def _reconnect(self, node: int, matched: Refined) -> bool:
+        """Connect the first key scan that matches after some that could not.
+
+        The match measures its pose relative to the scans before these, the odometry
+        relative to the last one of these. Returns whether earlier poses changed.
+        """
+        since = self._tracked.since_key
+        information = softened(inverted(since.covariance), _FLOOR)
+        reckoned = GraphEdge(node - 1, node, since.pose, information)
+        reference = self.graph.pose(self._reference)
+        turn = rotation3(reference.yaw)
+        information = turn.T @ matched.information @ turn + _WEAKEST
+        moved = reference.inverse() @ self._tracked.pose
+        edge = GraphEdge(
+            self._reference, node, moved, softened(information, _FLOOR), True
+        )
+        self.graph.connect([reckoned, edge])
+        # Of the match and the odometry together.
+        covariance = turn.T @ self._tracked.covariance @ turn + _FLOOR
+        self._key_covariance = moved_covariance(
+            self._reference_covariance, reference, ScanMotion(moved, covariance)
+        )
+        if mahalanobis(reckoned, self.graph.poses) < _CLOSE:
+            return False
+        self.graph.optimise()
+        return True
 
     def _close_loops(self) -> bool:
         """Search for places seen before; return whether poses changed."""
@@ -409,7 +544,9 @@ class Slam:
         if not fits:
             self.graph.optimise()
             self._continue_from_graph()
-        self._key_covariance = self.graph.covariances_from(0)[-1]
+        covariances = self.graph.covariances_from(0)
+        self._key_covariance = covariances[-1]
+        self._reference_covariance = covariances[self._reference]
         return not fits
 
     def _is_half_a_submap_later(self) -> bool:
@@ -426,50 +563,56 @@ class Slam:
         if self._track:
             last = self._track[-1]
             node = len(self.graph) - 1 if self.is_mapping else last.key
-            self._pose = self.graph.pose(node)
+            pose = self.graph.pose(node)
             if last.key == node:
-                self._pose = self._pose @ last.key_T_base
+                pose = pose @ last.key_T_base
+            self._tracked.place(pose, self._tracked.covariance)
         self._rebuild_local_map()
 
     def _rebuild_local_map(self) -> None:
         """Take the newest key scans; at the start of a session, the known ones."""
-        count, size = len(self.graph), self.params.local_scans
-        new = range(max(self._known, count - size), count) if self.is_mapping else ()
-        nodes = list(new)
-        if self._known and len(nodes) < size:
-            nearest = self.graph.nearest(self._pose, 2 * size)
-            nodes = sorted({*nodes, *(k for k in nearest if k < self._known)})
-        self._anchor = nodes[-1] if new else self._nearest_of(nodes)
-        self._last_key = self.graph.pose(self._anchor) if new else self._pose
-        points = self.graph.points(nodes)
-        if not len(points):  # nothing was in range: no scan will match
-            points = np.array([[self._pose.x, self._pose.y, 0.0, 0.0]])
-        scans = [
-            SensorView(
-                self.graph.keys[node].scan,
-                self.graph.pose(node) @ self.graph.keys[node].base_T_sensor,
-            )
-            for node in nodes
-        ]
-        self._local = LocalMap(points, self.params, scans=scans)
+        graph, size, pose = self.graph, self.params.local_scans, self._tracked.pose
+        newest = len(graph) - 1
+        nodes = new = graph.newest(self._known, size) if self.is_mapping else []
+        if self._known and len(new) < size:
+            nearest = graph.nearest(pose, 2 * size)
+            nodes = sorted({*new, *(k for k in nearest if k < self._known)})
+        if new:
+            self._reference = new[-1]
+        else:
+            self._reference = self._nearest_of(nodes) if nodes else newest
+        if self._reference == newest:
+            self._reference_covariance = self._key_covariance
+        is_growing = self.is_mapping and len(graph) > self._known
+        self._anchor = newest if is_growing else self._reference
+        self._last_key = graph.pose(newest) if is_growing else pose
+        self._local = make_local_map(graph, nodes, pose, self.params)
 
     def _nearest_of(self, nodes: list[int]) -> int:
-        return min(nodes, key=lambda k: self.graph.pose(k).distance_to(self._pose))
+        pose = self._tracked.pose
+        return min(nodes, key=lambda k: self.graph.pose(k).distance_to(pose))
 
     def _estimate(
         self, stamp_ns: int, is_matched: bool, is_corrected: bool = False
     ) -> SlamEstimate:
-        node = self._anchor
-        key_T_base = self.graph.pose(node).inverse() @ self._pose
+        pose = self._tracked.pose
         if self._is_located:
+            node = self._anchor
+            key_T_base = self.graph.pose(node).inverse() @ pose
             self._track.append(_Tracked(stamp_ns, node, key_T_base))
-        moved = ScanMotion(key_T_base, np.zeros((3, 3)))
-        covariance = moved_covariance(
-            self._key_covariance, self.graph.pose(node), moved
-        )
-        return SlamEstimate(
-            self._pose, covariance + self._covariance, is_matched, is_corrected
-        )
+        return SlamEstimate(pose, self._covariance_in_map(), is_matched, is_corrected)
+
+    def _covariance_in_map(self) -> Matrix3:
+        """Return the covariance of the pose relative to the map's origin."""
+        pose = self._tracked.pose
+        if not self._is_located:
+            if self._start is None:
+                return anywhere_covariance(self.graph, pose)
+            return _PLACED
+        reference = self.graph.pose(self._reference)
+        moved = ScanMotion(reference.inverse() @ pose, STILL.covariance)
+        covariance = moved_covariance(self._reference_covariance, reference, moved)
+        return covariance + self._tracked.covariance
 
 
 def _is_sure(motion: ScanMotion) -> bool:

@@ -12,7 +12,8 @@ from navette.navigation.slam.motion import inverted
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.point_map import make_point_map
 from navette.navigation.slam.refinement import PosePrior, Refined, refine
-from navette.navigation.slam.scan_points import Points
+from navette.navigation.slam.scan_graph import ScanGraph
+from navette.navigation.slam.scan_points import LEAST_POINTS, Points
 from navette.navigation.slam.score_grid import ScoreGrid, make_score_grid
 from navette.navigation.slam.visibility import (
     SensorView,
@@ -28,8 +29,6 @@ SIGMAS = 3.0
 _NEAR = 0.3
 _NEAR_RAD = 0.05
 _WIDEST_M = 5.0
-LEAST_POINTS = 10
-"""Points without which a scan is not matched."""
 # Share of a local map's points that are compared with a scan's free space.
 _EVERY = 4
 # Fit that a squared Mahalanobis distance of 1 from the prior costs.
@@ -95,6 +94,22 @@ class LocalMap:
         known = np.ascontiguousarray(self._points[::_EVERY])
         old = contradicted_share(own, make_views([placed]), known, pose.inverse())
         return max(new, old)
+
+
+def make_local_map(
+    graph: ScanGraph, nodes: Sequence[int], pose: Pose2, params: SlamParams
+) -> LocalMap:
+    """Return the map of key scans around a pose; nothing matches it without echoes."""
+    points = graph.points(nodes)
+    if not len(points):
+        points = np.array([[pose.x, pose.y, 0.0, 0.0]])
+    scans = [
+        SensorView(
+            graph.keys[node].scan, graph.pose(node) @ graph.keys[node].base_T_sensor
+        )
+        for node in nodes
+    ]
+    return LocalMap(points, params, scans=scans)
 
 
 def match(

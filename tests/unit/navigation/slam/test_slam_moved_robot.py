@@ -8,6 +8,7 @@ import pytest
 
 from navette.geometry import Pose2
 from navette.navigation.slam import Slam, SlamParams
+from navette.navigation.slam.match_status import MatchStatus
 from slam_office import Segments, box, scan_at
 
 HERE = Pose2(0.0, 0.0, 0.0)
@@ -147,6 +148,23 @@ def alike() -> Segments:
     return np.array(walls)
 
 
+TOUR_OF_BOTH = [
+    *ahead(3.1), *turned(math.pi), *ahead(3.1), *turned(-math.pi / 2), *ahead(6.0),
+    *turned(-math.pi / 2), *ahead(3.1), *turned(math.pi), *ahead(3.1),
+]  # fmt: skip
+
+
+def test_a_room_is_distinguished_from_one_without_its_cupboard() -> None:
+    """Nearly all surfaces fit in both rooms; the cupboard contradicts one of them."""
+    walls, south = np.array([*alike(), *box(6.8, -3.2, 0.6, 0.5)]), -math.pi / 2
+    known = mapped(walls, Pose2(2.1, 1.0, south), TOUR_OF_BOTH).graph
+    for place in (Pose2(8.1, -2.0, south), Pose2(7.6, -1.2, 0.4)):
+        slam = Slam(SlamParams(), None, graph=known, is_mapping=False)
+        robot = Robot(walls, place)
+        assert robot.step(slam)
+        assert error_m(slam, robot) < 0.05
+
+
 def test_rooms_that_look_alike_are_claimed_once_they_are_distinguishable() -> None:
     walls, south = alike(), -math.pi / 2
     tour = [*ahead(3.1), *turned(math.pi), *ahead(3.1), *turned(south), *ahead(6.0)]
@@ -157,6 +175,7 @@ def test_rooms_that_look_alike_are_claimed_once_they_are_distinguishable() -> No
     robot = Robot(walls, Pose2(8.1, -2.0, south))
     inside = robot.drive(slam, [*turned(math.pi), *ahead(0.5)])
     assert not any(inside)
+    assert slam.match_status is MatchStatus.LOST_AMBIGUOUS
     out = robot.drive(slam, [*ahead(2.4), *turned(south), *ahead(4.0)])
     first = out.index(True)
     assert all(out[first:])

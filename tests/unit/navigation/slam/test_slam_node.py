@@ -3,6 +3,7 @@
 import gc
 import math
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -152,25 +153,49 @@ def test_a_tilted_scanner_and_an_unknown_frame_are_refused() -> None:
         assert node.dropped_inputs[SCAN, "no_transform"] >= 1
 
 
-def test_a_robot_whose_scans_stop_matching_is_lost_until_they_match_again() -> None:
+def with_scan(step: Step, ranges: Any) -> Step:
+    scan = replace(step.scan, ranges=np.asarray(ranges, np.float32))
+    return step._replace(scan=scan)
+
+
+def test_without_echoes_the_odometry_is_used_and_reported() -> None:
+    with GraphHarness() as graph:
+        start(graph, lost_scans=5)
+        found = graph.collect("/pose", PoseWithCovarianceStamped)
+        status = graph.collect(
+            "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
+        )
+        feed(graph, STEPS[:20])
+        seen = found.last.pose.covariance[0]
+        feed(graph, [with_scan(step, np.full(360, np.inf)) for step in STEPS[20:32]])
+        assert status.last.message == "localized"
+        assert status.last.level == b"\x01"
+        values = {each.key: each.value for each in status.last.values}
+        assert "odometry alone" in values["reason"]
+        assert found.last.pose.covariance[0] > 3 * seen
+        feed(graph, STEPS[32:36])
+        assert status.last.level == b"\x00"
+        assert not any(each.key == "reason" for each in status.last.values)
+        assert {each.message for each in status.messages} == {
+            "localizing",
+            "localized",
+        }
+
+
+def test_a_robot_whose_scans_contradict_the_map_is_lost_until_they_match() -> None:
     with GraphHarness() as graph:
         start(graph, lost_scans=5)
         status = graph.collect(
             "/localization/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
         )
         feed(graph, STEPS[:20])
-        assert status.last.message == "localized"
-        blind = [
-            step._replace(scan=type(step.scan)(
-                np.full(360, np.inf, np.float32), step.scan.angle_min,
-                step.scan.angle_increment, step.scan.range_min, step.scan.range_max,
-            ))
-            for step in STEPS[20:26]
-        ]  # fmt: skip
-        feed(graph, blind)
+        feed(graph, [with_scan(step, np.full(360, 0.8)) for step in STEPS[20:27]])
         assert status.last.message == "lost"
         assert status.last.level == b"\x02"
-        feed(graph, STEPS[26:30])
+        values = {each.key: each.value for each in status.last.values}
+        assert values["reason"]
+        assert float(values["position_stddev_m"]) > 1.0
+        feed(graph, STEPS[27:31])
         assert status.last.message == "localized"
 
 

@@ -51,7 +51,7 @@ class LongSearch:
         self.held_the_loop = False
         usual = relocation.locate
 
-        def locate(*args: Any) -> Pose2 | None:
+        def locate(*args: Any) -> Any:
             self.searches += 1
             if self.searches == 1:
                 ran = threading.Event()
