@@ -22,25 +22,17 @@ from navette.navigation.slam.motion import (
     rotation3,
 )
 from navette.navigation.slam.params import SlamParams
+from navette.navigation.slam.place_search import FoundPlace, PlaceSearch
 from navette.navigation.slam.pose_graph import GraphEdge, mahalanobis
 from navette.navigation.slam.refinement import PosePrior, Refined
-from navette.navigation.slam.relocation import (
-    Relocation,
-    anywhere_covariance,
-    evidence_of,
-    locate,
-)
 from navette.navigation.slam.rendering import MapScan, render
 from navette.navigation.slam.scan_graph import KeyScan, ScanGraph
 from navette.navigation.slam.scan_points import scan_points
 from navette.navigation.slam.tracked_pose import STILL, TrackedPose
-from navette.navigation.slam.tracking import DOUBTFUL, make_local_map, match
-from navette.navigation.slam.visibility import SensorView
+from navette.navigation.slam.tracking import DOUBTFUL, compare, make_local_map
 
 # Uncertainty of the first pose, which is the map's origin.
 _START = np.diag([1e-6, 1e-6, 1e-6])
-# Of a pose that a person or a search of the whole map gives.
-_PLACED = np.diag([0.3**2, 0.3**2, 0.2**2])
 # What the errors that the scans of a local map share add to a match.
 _FLOOR = np.diag([0.005**2, 0.005**2, 0.002**2])
 # Of a match with a scan before a stretch without matches, so that it can be inverted.
@@ -49,8 +41,6 @@ _WEAKEST = 0.01 * np.eye(3)
 _GAIN = 0.15
 # Standard deviation of a predicted motion beyond which it replaces no odometry, m.
 _SURE_M = 0.3
-# Newest key scans that are searched for in the map by a robot that is lost.
-_SCOUTED = 10
 # Squared Mahalanobis distance of a closure from the graph up to which it fits anyway.
 _CLOSE = 1.0
 
@@ -113,14 +103,8 @@ class Slam:
         self.graph = ScanGraph() if graph is None else graph
         self.is_mapping = is_mapping or not len(self.graph)
         self._known = len(self.graph)
-        self._is_located = False
         # Whether the newest scan contradicts the map where the robot should be.
         self._is_contradicted = False
-        self._contradicted = 0.0  # share of its points
-        # What the last search of the whole map showed.
-        self._search = MatchStatus.LOST_NOWHERE
-        # A map of what the robot has seen since its place is unknown.
-        self._scout: Slam | None = None
         self._finder = LoopFinder(params)
         self._queried = 0  # newest key scan at the last search for loops
         self._motion = MotionModel(params)
@@ -129,12 +113,15 @@ class Slam:
         self._anchor = 0
         # The newest key scan that scans are matched with.
         self._reference = 0
-        self._start = start
         self._tracked = TrackedPose(HERE if start is None else start, _START)
         # Of the newest key scan and of the reference, relative to the map's origin.
         self._key_covariance: Matrix3 = np.zeros((3, 3))
         self._reference_covariance: Matrix3 = np.zeros((3, 3))
+        # While the place of the robot in the known map is unknown.
+        self._search: PlaceSearch | None = None
         self.match_status = MatchStatus.STARTING
+        if self._known:
+            self._lose(MatchStatus.STARTING, start)
         self.unmatched = 0
         self.unmatched_in_a_row = 0
         self.contradicted_in_a_row = 0
@@ -208,8 +195,8 @@ class Slam:
     def place(self, pose: Pose2) -> None:
         """Place the robot in a known map, roughly; the next scan finds it exactly."""
         if self._known:
-            self._lose(MatchStatus.STARTING)
-            self._start, self.unmatched_in_a_row = pose, 0
+            self._lose(MatchStatus.STARTING, pose)
+            self.unmatched_in_a_row = 0
 
     def refine(self) -> None:
         """Optimise all poses jointly, at the end of a run or before a map is saved."""
@@ -245,11 +232,18 @@ class Slam:
             for node, key in enumerate(self.graph.keys)
         ]
 
-    def _lose(self, match_status: MatchStatus) -> None:
+    @property
+    def _is_located(self) -> bool:
+        return self._search is None and len(self.graph) > 0
+
+    def _lose(self, match_status: MatchStatus, start: Pose2 | None = None) -> None:
         """Search for the robot from now on; all that is mapped is the known map."""
         self._known = len(self.graph)
-        self._is_located, self._start, self._scout = False, None, None
         self.match_status = match_status
+        self._search = PlaceSearch(
+            self.graph, self.params, start, match_status,
+            make_scout=lambda: Slam(self.params, trajectory_length=1),
+        )  # fmt: skip
 
     def _begin(
         self, key: KeyScan, motion: ScanMotion, odom: Pose2 | None, yaw: float | None
@@ -257,126 +251,37 @@ class Slam:
         """Start a map at the first scan, or find the scan in the known map."""
         tracked = self._tracked
         tracked.place(tracked.pose @ motion.pose, tracked.covariance)
-        if not self._known:
+        if self._search is None:
             self._note_located(key)
             self._keep(key, None)
             return
-        if self._start is None:
-            matched = self._found(key, odom, yaw)
-        else:
-            self._start = self._start @ motion.pose
-            if not key.is_informative:
-                self._reckon_from(self._start, key)
-                return
-            matched = self._placed(key, self._start)
-        if matched is None:
-            self._note_unlocated()
+        place = self._search.find(key, motion.pose, odom, yaw)
+        if place is None:
+            self._count_unmatched()
+            self.match_status = self._search.status
             return
+        self._search = None
         self._note_located(key)
-        covariance = inverted(inverted(_PLACED) + matched.information)
-        self._tracked.place(matched.pose, covariance)
-        self._join(key, matched.information)
+        tracked.place(place.pose, inverted(place.information))
+        self._rebuild_local_map()
+        if self.is_mapping:
+            self._start_session(key, place)
 
     def _note_located(self, key: KeyScan) -> None:
-        self._is_located, self._is_contradicted = True, False
-        self._scout = None
         self.unmatched_in_a_row = self.contradicted_in_a_row = 0
         self.match_status = (
             MatchStatus.MATCHED if key.is_informative else MatchStatus.NO_ECHOES
         )
 
-    def _note_unlocated(self) -> None:
-        """Search the whole map when scans do not match around the start."""
-        self._count_unmatched()
-        is_lost = self.unmatched_in_a_row >= self.params.lost_scans
-        if not (is_lost or self.match_status.is_lost):
-            return
-        if self._start is None:
-            self.match_status = self._search
-        else:
-            self.match_status = MatchStatus.LOST_CONTRADICTED
-            self._start = None  # it was wrong
-
-    def _reckon_from(self, start: Pose2, key: KeyScan) -> None:
-        """Begin at a start pose that no scan can confirm where nothing is in reach."""
-        self._note_located(key)
-        self._tracked.place(start, _PLACED)
-        self._rebuild_local_map()
-        self._join(key, np.zeros((3, 3)))
-
-    def _found(
-        self, key: KeyScan, odom: Pose2 | None, yaw: float | None
-    ) -> Refined | None:
-        """Return the match at the place that a search of the whole map finds."""
-        relocation = self._searched(key, odom, yaw)
-        if relocation is None:
-            return None
-        self._search = MatchStatus.LOST_NOWHERE
-        if not key.is_informative:
-            self._search = MatchStatus.LOST_NO_ECHOES
-        elif relocation.is_ambiguous:
-            self._search = MatchStatus.LOST_AMBIGUOUS
-        if relocation.pose is None:
-            return None
-        matched = self._placed(key, relocation.pose)
-        return None if self._is_claimed_too_early(matched) else matched
-
-    def _searched(
-        self, key: KeyScan, odom: Pose2 | None, yaw: float | None
-    ) -> Relocation | None:
-        """Search the whole map for the newest scans, after each new key scan."""
-        scout = self._scout
-        if scout is None or scout.unmatched_in_a_row:
-            scout = self._scout = Slam(self.params, trajectory_length=1)
-        before = len(scout.graph)
-        found = scout.add(
-            key.stamp_ns, key.scan, odom, base_T_sensor=key.base_T_sensor, yaw=yaw
-        )
-        count = len(scout.graph)
-        if count == before:
-            return None
-        newest = range(max(0, count - _SCOUTED), count)
-        points = scout.graph.points(newest, found.map_T_base)
-        return locate(self.graph, points, key, self.params)
-
-    def _placed(self, key: KeyScan, start: Pose2) -> Refined | None:
-        """Match a scan with the map around a start pose; None: it does not fit."""
-        before, self._tracked = self._tracked, TrackedPose(start, _PLACED)
-        self._rebuild_local_map()
-        matched = self._matched(key, STILL)
-        self._tracked = before
-        if matched is None or matched.overlap < DOUBTFUL:
-            return None
-        return matched
-
-    def _is_claimed_too_early(self, matched: Refined | None) -> bool:
-        """Whether a place that a search found may be another one that is not mapped.
-
-        What the map does not explain may be new. What contradicts it, too, but then
-        all other points have to fit, or the robot has to see more.
-        """
-        if matched is None:
-            return False
-        return evidence_of(matched.overlap, self._contradicted) < DOUBTFUL
-
-    def _join(self, key: KeyScan, information: Matrix3) -> None:
-        """Connect the first key scan of a session to the known map.
-
-        Args:
-            key: the scan; it is kept if the map grows.
-            information: (3, 3) of its match, in the map's axes.
-        """
-        if self.is_mapping and len(self.graph) == self._known:
-            near, pose = self._anchor, self._tracked.pose
-            there = self.graph.pose(near)
-            node = self.graph.insert(key, pose, starts_session=True)
-            turn = rotation3(there.yaw)
-            total = turn.T @ (information + inverted(_PLACED)) @ turn
-            edge = GraphEdge(
-                near, node, there.inverse() @ pose, softened(total, _FLOOR)
-            )
-            self.graph.connect([edge])
-            self._tracked.note_key()
+    def _start_session(self, key: KeyScan, place: FoundPlace) -> None:
+        """Connect the first key scan of a session to the known map."""
+        node = self.graph.insert(key, place.pose, starts_session=True)
+        there = self.graph.pose(place.near)
+        turn = rotation3(there.yaw)
+        information = softened(turn.T @ place.information @ turn, _FLOOR)
+        moved = there.inverse() @ place.pose
+        self.graph.connect([GraphEdge(place.near, node, moved, information)])
+        self._tracked.note_key()
         self._rebuild_local_map()
 
     def _count_unmatched(self) -> None:
@@ -426,17 +331,11 @@ class Slam:
     def _matched(self, key: KeyScan, motion: ScanMotion) -> Refined | None:
         information = inverted(self._tracked.predicted(motion))
         prior = PosePrior(self._tracked.pose @ motion.pose, information)
-        found = match(self._local, key.points, prior, self.params)
-        pose = prior.pose if found is None else found.pose
-        placed = SensorView(key.scan, key.base_T_sensor)
-        share = self._local.contradiction(placed, key.points, pose)
-        self._contradicted = share
-        self._is_contradicted = share > self.params.max_contradicted
+        compared = compare(self._local, key, prior, self.params)
+        self._is_contradicted = compared.is_contradicted
         # In the wide window after a stretch by odometry alone, parts fit by chance.
         least = DOUBTFUL if self.match_status is MatchStatus.NO_ECHOES else 0.0
-        if self._is_contradicted or found is None or found.overlap < least:
-            return None
-        return found
+        return None if compared.overlap < least else compared.refined
 
     def _loss(self, key: KeyScan, matched: Refined | None) -> MatchStatus | None:
         """Note what a scan shows; return why the robot is lost, or None."""
@@ -605,10 +504,8 @@ class Slam:
     def _covariance_in_map(self) -> Matrix3:
         """Return the covariance of the pose relative to the map's origin."""
         pose = self._tracked.pose
-        if not self._is_located:
-            if self._start is None:
-                return anywhere_covariance(self.graph, pose)
-            return _PLACED
+        if self._search is not None:
+            return self._search.covariance(pose)
         reference = self.graph.pose(self._reference)
         moved = ScanMotion(reference.inverse() @ pose, STILL.covariance)
         covariance = moved_covariance(self._reference_covariance, reference, moved)

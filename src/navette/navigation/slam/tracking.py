@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from navette.navigation.slam.motion import inverted
 from navette.navigation.slam.params import SlamParams
 from navette.navigation.slam.point_map import make_point_map
 from navette.navigation.slam.refinement import PosePrior, Refined, refine
-from navette.navigation.slam.scan_graph import ScanGraph
+from navette.navigation.slam.scan_graph import KeyScan, ScanGraph
 from navette.navigation.slam.scan_points import LEAST_POINTS, Points
 from navette.navigation.slam.score_grid import ScoreGrid, make_score_grid
 from navette.navigation.slam.visibility import (
@@ -96,6 +97,25 @@ class LocalMap:
         return max(new, old)
 
 
+class ScanComparison(NamedTuple):
+    """A scan at its best pose on a local map.
+
+    Attributes:
+        refined: the match; None: the scan does not overlap the map, or contradicts it.
+        contradicted: share of its points that contradict the map, 0 to 1.
+        is_contradicted: whether these are too many.
+    """
+
+    refined: Refined | None
+    contradicted: float
+    is_contradicted: bool
+
+    @property
+    def overlap(self) -> float:
+        """Share of points that match, 0 to 1."""
+        return 0.0 if self.refined is None else self.refined.overlap
+
+
 def make_local_map(
     graph: ScanGraph, nodes: Sequence[int], pose: Pose2, params: SlamParams
 ) -> LocalMap:
@@ -145,6 +165,20 @@ def match(
             if _fit(other, prior, params) > _fit(best, prior, params) + _GAIN:
                 best = other
     return best if best.overlap >= params.min_overlap else None
+
+
+def compare(
+    local: LocalMap, key: KeyScan, prior: PosePrior, params: SlamParams
+) -> ScanComparison:
+    """Match a scan with a local map and count what contradicts the map there."""
+    found = match(local, key.points, prior, params)
+    pose = prior.pose if found is None else found.pose
+    view = SensorView(key.scan, key.base_T_sensor)
+    contradicted = local.contradiction(view, key.points, pose)
+    is_contradicted = contradicted > params.max_contradicted
+    return ScanComparison(
+        None if is_contradicted else found, contradicted, is_contradicted
+    )
 
 
 def _refined(

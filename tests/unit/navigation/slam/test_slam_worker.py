@@ -64,7 +64,7 @@ class LongSearch:
                 self.held_the_loop = not ran.wait(WAIT_S)
             return usual(*args)
 
-        monkeypatch.setattr("navette.navigation.slam.slam.locate", locate)
+        monkeypatch.setattr("navette.navigation.slam.place_search.locate", locate)
 
 
 def wait_for(graph: GraphHarness, value: Callable[[], int], wanted: int) -> None:
