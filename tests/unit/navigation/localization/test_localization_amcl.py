@@ -30,6 +30,7 @@ from navette.navigation.localization.amcl.localizer import (
 from navette.navigation.localization.amcl.motion_model import (
     move_differential,
     move_omni,
+    noise_of_motion,
 )
 from navette.navigation.localization.amcl.resampling import (
     kld_limit,
@@ -310,6 +311,37 @@ def test_a_pose_that_drifts_without_echoes_is_lost_as_uncertain() -> None:
     again = steps(localizer, [forth[-1]] * 60, Pose2(0, 0, 0), 200)
     assert again.state is LocalizationState.LOCALIZED
     assert again.cause is None
+
+
+def test_without_echoes_the_spread_is_that_of_the_odometry_if_it_states_one() -> None:
+    """The alphas would double it in half a metre."""
+    localizer = followed()
+    last = line(1.0, 3.5, 0.0, 9)[-1]
+    spreads = []
+    for k in range(1, 40):
+        pose = last @ Pose2(0.12 * k, 0.0, 0.0)
+        covariance = np.diag([2e-5 * k, 2e-5 * k, 1e-7 * k])
+        stamp_ns = (9 + k) * SCAN_NS
+        found = localizer.step(ScanView(FEW, pose, stamp_ns, 180, covariance))
+        assert found.state is LocalizationState.LOCALIZED
+        assert found.estimate is not None
+        spreads.append(found.estimate.stddev_m)
+    assert spreads[0] < spreads[-1] < 0.4
+
+
+def test_the_noise_of_a_motion_is_what_it_adds_to_the_covariance() -> None:
+    before, after = Pose2(1.0, 2.0, 0.5), Pose2(1.0, 2.0, 0.5) @ Pose2(0.4, 0.0, 0.1)
+    added = np.diag([0.01, 0.002, 0.003])
+    c, s = math.cos(after.yaw), math.sin(after.yaw)
+    odom_R_base = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    jacobian = np.array(
+        [[1, 0, before.y - after.y], [0, 1, after.x - before.x], [0, 0, 1]]
+    )
+    first = np.diag([0.1, 0.2, 0.05])
+    second = jacobian @ first @ jacobian.T + odom_R_base @ added @ odom_R_base.T
+    found = noise_of_motion(before, first, after, second)
+    assert found == pytest.approx(added, abs=1e-12)
+    assert noise_of_motion(before, first, after, first) is None  # a constant one
 
 
 def test_a_robot_that_people_surrounded_continues_where_it_was() -> None:

@@ -32,6 +32,7 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Points,
 )
 from navette.navigation.localization.amcl.messages import thinned
+from navette.navigation.localization.amcl.motion_model import noise_of_motion
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.localization.amcl.particle_filter import ParticleFilter
 from navette.navigation.localization.amcl.recent_scans import RecentScans
@@ -87,12 +88,14 @@ class ScanView:
         odom_T_base: pose of the base in the odometry's frame.
         stamp_ns: time of the scan.
         beams: number of beams, with or without an echo; 0 if unknown.
+        odom_covariance: (3, 3) of x, y, yaw of odom_T_base; None if unknown.
     """
 
     points: Points
     odom_T_base: Pose2
     stamp_ns: int
     beams: int = 0
+    odom_covariance: NDArray[np.float64] | None = None
 
     @property
     def is_informative(self) -> bool:
@@ -235,9 +238,10 @@ class MapLocalizer:
         """Move by the odometry alone: the particles around the pose spread."""
         if not self._is_blind and self.confidence.state is LocalizationState.LOCALIZED:
             self.filter.keep_cluster()
+        before = self._updated
         motion = self._motion_to(scan)
-        if motion is not None:
-            self.filter.drift(motion)
+        if before is not None and motion is not None:
+            self.filter.drift(motion, _noise_between(before, scan))
         self._is_blind = True
 
     def _estimate(self) -> ParticleEstimate:
@@ -265,7 +269,9 @@ class MapLocalizer:
         if state is LocalizationState.LOST:
             self._handle_loss(scan, before)
         is_new = is_updated or before is not localized
-        is_known = state is localized or self._is_given
+        # A given pose is used at once; a confirmed correction stays until the next.
+        is_first = self._is_given and not self._was_localized
+        is_known = state is localized or is_first
         if is_known and is_new and match is not None:
             self._map_T_odom = map_T_odom
             self._was_localized |= state is localized
@@ -381,6 +387,14 @@ class MapLocalizer:
     def _clear_scans(self) -> None:
         self._recent.clear()
         self._path.clear()
+
+
+def _noise_between(before: ScanView, after: ScanView) -> NDArray[np.float64] | None:
+    """Return the covariance of the motion between scans, if the odometry states it."""
+    former, latter = before.odom_covariance, after.odom_covariance
+    if former is None or latter is None or not is_usable(latter):
+        return None
+    return noise_of_motion(before.odom_T_base, former, after.odom_T_base, latter)
 
 
 def default_covariance(params: AmclParams) -> NDArray[np.float64]:

@@ -134,6 +134,7 @@ class AmclNode(StageNode):
         self._state = LocalizationState.NO_MAP
         self._tracker, self._jumps = self._new_tracker(), OdometryJumps()
         self._attitude = AttitudeTracker()
+        self._odom_covariance: Any = np.zeros(36)
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._status.report(LocalizationState.NO_MAP, StatusReporter.ERROR)
         self.create_service(
@@ -165,6 +166,7 @@ class AmclNode(StageNode):
         if not self._tracker.update(msg):
             return
         self._attitude.update(msg)
+        self._odom_covariance = msg.pose.covariance
         pose, stamp_ns = self._tracker.latest, self._tracker.stamp_ns
         assert pose is not None, "the tracker accepted the odometry"
         assert stamp_ns is not None, "with its stamp"
@@ -198,7 +200,8 @@ class AmclNode(StageNode):
         upward = upward_of(self._attitude.at(stamp_ns))
         if upward != LEVEL:
             points = points[~is_floor(points, self._height_of(msg), upward)]
-        view = ScanView(points, odom_T_base, stamp_ns, beams=len(msg.ranges))
+        covariance = planar_covariance(self._odom_covariance)
+        view = ScanView(points, odom_T_base, stamp_ns, len(msg.ranges), covariance)
         self._use(partial(_located, view=view), partial(self._publish, view=view))
 
     def _height_of(self, msg: LaserScan) -> float:

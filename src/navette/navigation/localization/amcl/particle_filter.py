@@ -28,6 +28,8 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Points,
 )
 from navette.navigation.localization.amcl.motion_model import (
+    Alphas,
+    add_noise,
     move_differential,
     move_omni,
 )
@@ -44,6 +46,8 @@ _SEED_STDDEV = (0.08, 0.08, math.radians(3.0))
 # Candidates are drawn by this power of their likelihood: candidates that fit a little
 # less well survive until the robot has moved.
 _SEED_BEAMS = 6.0
+# Alphas of a motion without noise.
+_EXACT: Alphas = (0.0, 0.0, 0.0, 0.0, 0.0)
 # Updates between two searches of the whole map.
 _SEARCH_EVERY = 5
 # Largest share of particles that recovery replaces in an update.
@@ -110,9 +114,21 @@ class ParticleFilter:
         self._move(poses, motion, self._alphas, self._rng)
         self.particles = Particles(poses, self.particles.weights)
 
-    def drift(self, motion: Pose2) -> None:
-        """Move without a scan that corrects: the number follows the growing spread."""
-        self.predict(motion)
+    def drift(self, motion: Pose2, noise: NDArray[np.float64] | None) -> None:
+        """Move without a scan that corrects: the number follows the growing spread.
+
+        Args:
+            motion: base before to base after, of the odometry.
+            noise: covariance (3, 3) of the motion, base frame; None: by the alphas.
+                These are larger, so that particles between two scans are diverse.
+        """
+        if noise is None:
+            self.predict(motion)
+        else:
+            moved = self.particles.poses.copy()
+            self._move(moved, motion, _EXACT, self._rng)
+            add_noise(moved, noise, self._rng)
+            self.particles = Particles(moved, self.particles.weights)
         poses, weights = self.particles.poses, self.particles.weights
         count = self._count_for(poses)
         if count > len(poses):
