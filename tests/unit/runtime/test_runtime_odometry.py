@@ -7,9 +7,10 @@ import pytest
 
 from navette.geometry import Pose2, Transform3, quaternion_from_yaw
 from navette.msgs import topics
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.runtime import Node, ns_to_stamp
+from navette.runtime import DurabilityPolicy, Node, QoSProfile, ns_to_stamp
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, StageNode
 from navette.runtime.testing import GraphHarness
@@ -109,6 +110,25 @@ def test_missing_frames_are_reported_once_their_publisher_has_had_time_to_start(
     graph.run_for(1.9)
     assert not stage.dropped_inputs
     graph.run_for(1.0)
+    assert set(stage.dropped_inputs) == {(topics.ODOMETRY.name, "unknown_frame")}
+
+
+def test_the_frame_of_a_map_may_be_missing_while_the_pose_is_searched_for(
+    graph: GraphHarness,
+) -> None:
+    """The node that searches reports it; later the frame is missed again."""
+    stage = graph.add(Stage(context=graph.context))
+    moving = odometry(S, Pose2(0, 0, 0), frame="odom")
+    graph.publish_every(0.1, topics.ODOMETRY.name, lambda _: moving)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    status = graph.node.create_publisher(
+        DiagnosticStatus, topics.LOCALIZATION_STATUS.name, latched
+    )
+    status.publish(DiagnosticStatus(name="amcl", message="localizing"))
+    graph.run_for(5.0)
+    assert not stage.dropped_inputs
+    status.publish(DiagnosticStatus(name="amcl", message="localized"))
+    graph.run_for(3.0)
     assert set(stage.dropped_inputs) == {(topics.ODOMETRY.name, "unknown_frame")}
 
 

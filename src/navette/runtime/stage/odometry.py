@@ -6,10 +6,12 @@ from collections import deque
 from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3, advanced, angle_difference
 from navette.msgs import topics
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
 from navette.runtime.planar_odometry import HERE, REST, PlanarOdometry
+from navette.runtime.qos import DurabilityPolicy, QoSProfile
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import Buffer, TransformException, TransformListener
 
@@ -20,6 +22,8 @@ _CARRIED_M = 1.0
 _JUMP_M, _JUMP_RAD = 0.15, 0.1
 # Time without a transform after which that is reported.
 _STARTING_NS = 2_000_000_000
+_LOCALIZED = "localized"  # state once the pose is found
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class PoseTracker:
@@ -70,6 +74,7 @@ class PoseTracker:
             self.buffer, node, static_only=True, on_invalid=self._on_invalid
         )
         self._moving_listener: TransformListener | None = None
+        self._is_searched_for = False  # another node reports that the pose is unknown
         self._child_T_base: tuple[str, Pose2] | None = None
         self._waits_since_ns: int | None = None
         self._newest_transform: tuple[Transform3, Pose2] | None = None
@@ -250,13 +255,33 @@ class PoseTracker:
                 self._moving_listener = TransformListener(
                     self.buffer, self._node, on_invalid=self._on_invalid
                 )
-            self._await_frame(error)
+                self._await_localization()
+            if not self._is_searched_for:
+                self._await_frame(error)
             return None
         known = self._newest_transform
         if known is None or known[0] is not transform:
             known = transform, _plain(transform.to_pose2())
             self._newest_transform = known
         return known[1]
+
+    def _await_localization(self) -> None:
+        """Receive the state of the node that publishes the transform to the map.
+
+        While it searches for the pose the transform is missing, and it reports that.
+        """
+
+        def note(msg: DiagnosticStatus) -> None:
+            is_own = msg.name == self._node.get_name()
+            self._is_searched_for = not is_own and msg.message != _LOCALIZED
+
+        self._node.create_subscription(
+            DiagnosticStatus,
+            topics.LOCALIZATION_STATUS.name,
+            note,
+            _LATCHED,
+            shared=True,
+        )
 
     def _await_frame(self, error: TransformException) -> None:
         """Report a missing transform, unless its publisher may be starting."""

@@ -14,7 +14,10 @@ from navette.navigation.localization.amcl import (
     ParticleFilter,
     global_search,
 )
-from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.confidence import (
+    DoubtCause,
+    LocalizationState,
+)
 from navette.navigation.localization.amcl.estimate import heaviest_cluster
 from navette.navigation.localization.amcl.global_search import search_map
 from navette.navigation.localization.amcl.localizer import (
@@ -27,6 +30,7 @@ from navette.navigation.localization.amcl.localizer import (
 from navette.navigation.localization.amcl.motion_model import (
     move_differential,
     move_omni,
+    noise_of_motion,
 )
 from navette.navigation.localization.amcl.resampling import (
     kld_limit,
@@ -216,7 +220,7 @@ def test_a_carried_robot_is_lost_and_found() -> None:
     localizer.set_pose(before[0], default_covariance(localizer.params))
     assert off(steps(localizer, before, odom), before[-1], odom) < 0.08
     # Carried to the other room; odometry did not notice.
-    carried = line(6.5, 1.5, 1.2, 15)
+    carried = line(6.5, 1.5, 1.2, 20)
     noticed = before[-1] @ carried[0].inverse()
     seen = set()
     for number, pose in enumerate(carried, 100):
@@ -250,6 +254,109 @@ def test_no_echo_changes_nothing() -> None:
     located = localizer.step(nothing)
     assert located.estimate is not None
     assert located.estimate.pose.distance_to(pose) < 0.1
+
+
+FEW = 0.5 * np.column_stack([np.cos(np.arange(6.0)), np.sin(np.arange(6.0))])
+
+
+def blind(localizer: MapLocalizer, poses: list[Pose2], first: int) -> list[Located]:
+    """Use scans in which six of 180 beams have an echo, of things near the robot."""
+    return [
+        localizer.step(ScanView(FEW, pose, number * SCAN_NS, beams=180))
+        for number, pose in enumerate(poses, first)
+    ]
+
+
+def followed() -> MapLocalizer:
+    """Return a localizer after 9 steps from the left of the map."""
+    localizer = MapLocalizer(AmclParams(), CELLS, SPEC)
+    localizer.set_pose(at(1.0, 3.5, 0.0), default_covariance(localizer.params))
+    steps(localizer, line(1.0, 3.5, 0.0, 9), Pose2(0, 0, 0))
+    return localizer
+
+
+def test_a_robot_at_rest_that_sees_nothing_stays_localized() -> None:
+    localizer = followed()
+    seen = blind(localizer, [line(1.0, 3.5, 0.0, 9)[-1]] * 50, 9)
+    assert {each.state for each in seen} == {LocalizationState.LOCALIZED}
+    assert seen[-1].match is None
+
+
+def test_without_echoes_the_pose_grows_uncertain_and_is_confirmed_again() -> None:
+    localizer = followed()
+    last = line(1.0, 3.5, 0.0, 9)[-1]
+    away = [last @ Pose2(0.12 * k, 0.0, 0.0) for k in range(1, 14)]
+    seen = blind(localizer, [*away, *away[::-1]], 9)
+    spreads = [each.estimate.stddev_m for each in seen if each.estimate is not None]
+    assert spreads[12] > 2 * spreads[0]
+    assert seen[4].state is LocalizationState.LOCALIZED
+    correction = seen[4].map_T_odom
+    assert correction is not None
+    assert (correction @ away[4]).distance_to(away[4]) < 0.06
+    again = steps(localizer, [last] * 40, Pose2(0, 0, 0), 100)
+    assert again.state is LocalizationState.LOCALIZED
+    assert off(again, last, Pose2(0, 0, 0)) < 0.08
+
+
+def test_a_pose_that_drifts_without_echoes_is_lost_as_uncertain() -> None:
+    localizer = followed()
+    last = line(1.0, 3.5, 0.0, 9)[-1]
+    turns = [last @ Pose2(0.0, 0.0, 0.4 * (k % 2)) for k in range(60)]
+    forth = [turn @ Pose2(0.12 * (k % 8), 0.0, 0.0) for k, turn in enumerate(turns)]
+    seen = blind(localizer, forth, 9)
+    assert seen[-1].state is LocalizationState.LOST
+    assert seen[-1].cause is DoubtCause.UNCERTAIN
+    assert seen[-1].estimate is not None
+    assert seen[-1].estimate.stddev_m > localizer.params.lost_stddev_m
+    again = steps(localizer, [forth[-1]] * 60, Pose2(0, 0, 0), 200)
+    assert again.state is LocalizationState.LOCALIZED
+    assert again.cause is None
+
+
+def test_without_echoes_the_spread_is_that_of_the_odometry_if_it_states_one() -> None:
+    """The alphas would double it in half a metre."""
+    localizer = followed()
+    last = line(1.0, 3.5, 0.0, 9)[-1]
+    spreads = []
+    for k in range(1, 40):
+        pose = last @ Pose2(0.12 * k, 0.0, 0.0)
+        covariance = np.diag([2e-5 * k, 2e-5 * k, 1e-7 * k])
+        stamp_ns = (9 + k) * SCAN_NS
+        found = localizer.step(ScanView(FEW, pose, stamp_ns, 180, covariance))
+        assert found.state is LocalizationState.LOCALIZED
+        assert found.estimate is not None
+        spreads.append(found.estimate.stddev_m)
+    assert spreads[0] < spreads[-1] < 0.4
+
+
+def test_the_noise_of_a_motion_is_what_it_adds_to_the_covariance() -> None:
+    before, after = Pose2(1.0, 2.0, 0.5), Pose2(1.0, 2.0, 0.5) @ Pose2(0.4, 0.0, 0.1)
+    added = np.diag([0.01, 0.002, 0.003])
+    c, s = math.cos(after.yaw), math.sin(after.yaw)
+    odom_R_base = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    jacobian = np.array(
+        [[1, 0, before.y - after.y], [0, 1, after.x - before.x], [0, 0, 1]]
+    )
+    first = np.diag([0.1, 0.2, 0.05])
+    second = jacobian @ first @ jacobian.T + odom_R_base @ added @ odom_R_base.T
+    found = noise_of_motion(before, first, after, second)
+    assert found == pytest.approx(added, abs=1e-12)
+    assert noise_of_motion(before, first, after, first) is None  # a constant one
+
+
+def test_a_robot_that_people_surrounded_continues_where_it_was() -> None:
+    """Also where furniture was moved, and other places fit as well as its own."""
+    localizer = followed()
+    last = line(1.0, 3.5, 0.0, 9)[-1]
+    angles = np.linspace(0, 6.2, 120)
+    crowd = 0.7 * np.column_stack([np.cos(angles), np.sin(angles)])
+    for number in range(9, 40):
+        located = localizer.step(ScanView(crowd, last, number * SCAN_NS, beams=180))
+    assert located.state is LocalizationState.LOST
+    assert located.cause is DoubtCause.CONTRADICTED
+    again = steps(localizer, [last] * 30, Pose2(0, 0, 0), 40)
+    assert again.state is LocalizationState.LOCALIZED
+    assert off(again, last, Pose2(0, 0, 0)) < 0.08
 
 
 def test_covariances_of_initial_poses_are_checked() -> None:

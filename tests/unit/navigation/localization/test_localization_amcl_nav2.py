@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from navette.geometry import Pose2
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.grids import GridSpec
 from navette.navigation.localization.amcl import AmclParams
 from navette.navigation.localization.amcl.likelihood_field import LikelihoodField
 from navette.navigation.localization.amcl.node import AmclNode
 from navette.navigation.localization.amcl.particle_filter import ParticleFilter
-from navette.runtime import Context, VirtualClock
+from navette.runtime import Context, VirtualClock, ns_to_stamp
 from navette.runtime.testing import GraphHarness
 
 #: The section amcl of Nav2's nav2_params.yaml, with other values.
@@ -122,3 +123,33 @@ def test_a_missing_map_is_reported_once() -> None:
         assert len(texts) == 1, texts
         assert texts[0].startswith("no map has arrived on /static_map")
         assert "--map FILE.yaml" in texts[0]
+
+
+def test_a_pose_that_is_not_found_at_rest_is_reported_once() -> None:
+    """From the middle of a square room four headings fit."""
+    cells = np.zeros((120, 120), np.int8)
+    cells[:2], cells[-2:], cells[:, :2], cells[:, -2:] = 100, 100, 100, 100
+    angles = np.arange(120) * (2 * np.pi / 120)
+    ranges = 2.9 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
+    with GraphHarness() as graph:
+        graph.add(AmclNode(context=graph.context))
+        logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+        known = OccupancyGrid(data=cells.ravel())
+        known.header.frame_id = "map"
+        known.info.width, known.info.height, known.info.resolution = 120, 120, 0.05
+        graph.publish("/static_map", known, latched=True)
+        for _ in range(100):
+            stamp = ns_to_stamp(graph.now_ns)
+            odometry = Odometry(child_frame_id="base_link")
+            odometry.header.frame_id, odometry.header.stamp = "odom", stamp
+            odometry.pose.pose.orientation.w = 1.0
+            scan = LaserScan(
+                angle_increment=2 * np.pi / 120, range_max=10.0, ranges=ranges
+            )
+            scan.header.frame_id, scan.header.stamp = "base_link", stamp
+            graph.publish("/odom/filtered", odometry)
+            graph.publish("/lidar", scan)
+            graph.run_for(0.1)
+        texts = [log.msg for log in logs.messages if "Drive the robot" in log.msg]
+        assert len(texts) == 1, [log.msg for log in logs.messages]
+        assert texts[0].startswith("localizing: the pose on the map is unknown")

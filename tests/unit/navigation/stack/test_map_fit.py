@@ -57,6 +57,12 @@ def test_a_map_of_a_part_of_the_world_fits() -> None:
     assert fits_world(cells, spec, OUTLINES)
 
 
+def test_a_map_whose_furniture_was_moved_fits() -> None:
+    cells, spec = room(Pose2(0.0, 0.0, 0.0))
+    cells[90:110, 70:91] = 100
+    assert fits_world(cells, spec, OUTLINES)
+
+
 def test_the_origin_may_be_turned() -> None:
     """The cells are stored in another order; the frame is the world's."""
     cells, spec = room(Pose2(0.0, 0.0, 0.0))

@@ -60,6 +60,17 @@ class Particles:
         """The heaviest cluster."""
         return heaviest_cluster(self.poses, self.weights)
 
+    @cached_property
+    def whole(self) -> ParticleEstimate:
+        """All particles as one cluster, however wide it is."""
+        return _moments(self.poses, self.weights)
+
+    def near(self, pose: Pose2) -> "Particles":
+        """Return the particles of the cluster around a pose."""
+        inside = _is_near(self.poses, np.array(pose))
+        weights = self.weights[inside]
+        return Particles(self.poses[inside], weights / weights.sum())
+
 
 def heaviest_cluster(
     particles: NDArray[np.float64], weights: NDArray[np.float64]
@@ -73,15 +84,29 @@ def heaviest_cluster(
     inside = in_heaviest_bin(particles, weights, _BIN_M, _BIN_HEADINGS)
     mean = _mean(particles[inside], weights[inside])
     for _ in range(_ROUNDS):
-        away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])
-        turn = np.abs(_wrapped(particles[:, 2] - mean[2]))
-        inside = (away < _RADIUS_M) & (turn < _RADIUS_RAD)
+        inside = _is_near(particles, mean)
         mean = _mean(particles[inside], weights[inside])
-    own, mass_inside = weights[inside], float(weights[inside].sum())
-    off = particles[inside] - mean
+    return _moments(particles[inside], weights[inside])
+
+
+def _is_near(
+    particles: NDArray[np.float64], mean: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])
+    turn = np.abs(_wrapped(particles[:, 2] - mean[2]))
+    near: NDArray[np.bool_] = (away < _RADIUS_M) & (turn < _RADIUS_RAD)
+    return near
+
+
+def _moments(
+    particles: NDArray[np.float64], weights: NDArray[np.float64]
+) -> ParticleEstimate:
+    """Return mean, covariance and total weight."""
+    mean, mass = _mean(particles, weights), float(weights.sum())
+    off = particles - mean
     off[:, 2] = _wrapped(off[:, 2])
-    covariance = (off * own[:, None]).T @ off / mass_inside
-    return ParticleEstimate(Pose2(*mean.tolist()), covariance, mass_inside)
+    covariance = (off * weights[:, None]).T @ off / mass
+    return ParticleEstimate(Pose2(*mean.tolist()), covariance, mass)
 
 
 def _mean(

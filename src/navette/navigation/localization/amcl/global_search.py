@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.geometry import Pose2
 from navette.navigation.localization.amcl.bins import bin_keys
 from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
@@ -70,15 +71,20 @@ def search_map(field: LikelihoodField, points: Points) -> Candidates:
 def different(poses: Poses, most: int) -> NDArray[np.int64]:
     """Return indices of poses that differ from all earlier chosen ones."""
     chosen: list[int] = []
-    for index, (x, y, yaw) in enumerate(poses):
-        others = poses[chosen]
-        near = np.hypot(others[:, 0] - x, others[:, 1] - y) < _APART_M
-        turn = np.abs((others[:, 2] - yaw + math.pi) % (2 * math.pi) - math.pi)
-        if not (near & (turn < _APART_RAD)).any():
+    for index, pose in enumerate(poses):
+        if not is_same(poses[chosen], Pose2(*pose)).any():
             chosen.append(index)
             if len(chosen) == most:
                 break
     return np.array(chosen, np.int64)
+
+
+def is_same(poses: Poses, pose: Pose2) -> NDArray[np.bool_]:
+    """Return which poses (N, 3) are of the same place and heading as another one."""
+    near = np.hypot(poses[:, 0] - pose.x, poses[:, 1] - pose.y) < _APART_M
+    turn = np.abs((poses[:, 2] - pose.yaw + math.pi) % (2 * math.pi) - math.pi)
+    same: NDArray[np.bool_] = near & (turn < _APART_RAD)
+    return same
 
 
 def _spread(points: Points, count: int) -> Points:

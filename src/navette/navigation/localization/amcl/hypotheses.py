@@ -4,12 +4,9 @@ Rooms that look alike are not distinguished by one scan. The newest scans, place
 relative to each other by the odometry, are searched for in the whole map together.
 """
 
-from collections import deque
-from typing import NamedTuple
-
 import numpy as np
 
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Pose2
 from navette.navigation.localization.amcl.global_search import (
     Candidates,
     different,
@@ -21,55 +18,13 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Poses,
 )
 
-# Motion between two scans that are kept, and how many are.
-_APART_M, _APART_RAD = 0.5, 0.5
-_KEPT = 4
-# Points of all kept scans that are compared.
-_MOST_POINTS = 360
+# Motion between two scans that are compared, and how many are.
+APART_M, APART_RAD, SCANS = 0.5, 0.5, 4
+# Points of all these scans that are used.
+MOST_POINTS = 360
 # Difference of the mean log likelihood of a beam up to which two places are equally
 # likely. That of the true place is at most 0.002 below the best one.
 _ALIKE = 0.012
-
-
-class _Seen(NamedTuple):
-    points: Points
-    odom_T_base: Pose2
-
-
-class RecentScans:
-    """Scans along the path, the newest ones."""
-
-    def __init__(self) -> None:
-        self._kept: deque[_Seen] = deque(maxlen=_KEPT)
-
-    def clear(self) -> None:
-        """Forget all scans."""
-        self._kept.clear()
-
-    def add(self, points: Points, odom_T_base: Pose2) -> None:
-        """Keep the ends of beams (N, 2), base frame, if the robot has moved."""
-        if self._kept:
-            before = self._kept[-1].odom_T_base
-            turned = abs(angle_difference(before.yaw, odom_T_base.yaw))
-            if before.distance_to(odom_T_base) < _APART_M and turned < _APART_RAD:
-                return
-        self._kept.append(_Seen(points, odom_T_base))
-
-    def move_odometry(self, new_T_old: Pose2) -> None:
-        """Place the scans in the odometry's frame after a jump."""
-        kept = [_Seen(each.points, new_T_old @ each.odom_T_base) for each in self._kept]
-        self._kept.clear()
-        self._kept.extend(kept)
-
-    def seen_from(self, points: Points, odom_T_base: Pose2) -> Points:
-        """Return the points of the kept scans and of this one in its base frame."""
-        base_T_odom = odom_T_base.inverse()
-        parts = [
-            (base_T_odom @ each.odom_T_base).apply(each.points) for each in self._kept
-        ]
-        together = np.concatenate([points, *parts])
-        step = -(-len(together) // _MOST_POINTS)
-        return np.ascontiguousarray(together[::step])
 
 
 def hypotheses(field: LikelihoodField, points: Points, pose: Pose2) -> Candidates:

@@ -76,6 +76,53 @@ def move_omni(
     particles[:, 2] = _wrapped(particles[:, 2] + turned)
 
 
+def noise_of_motion(
+    odom_T_before: Pose2,
+    covariance_before: NDArray[np.float64],
+    odom_T_after: Pose2,
+    covariance_after: NDArray[np.float64],
+) -> NDArray[np.float64] | None:
+    """Return the covariance (3, 3) that a motion adds, base frame after it.
+
+    ``Q = P_after - F P_before F'`` with the Jacobian F of the motion.
+
+    Args:
+        odom_T_before: pose of the base according to the odometry.
+        covariance_before: (3, 3) of its x, y, yaw in the odometry's frame.
+        odom_T_after: the same after the motion.
+        covariance_after: likewise.
+
+    Returns:
+        None if the covariances are not those of odometry, which grow with each motion.
+    """
+    jacobian = np.eye(3)
+    jacobian[0, 2] = odom_T_before.y - odom_T_after.y
+    jacobian[1, 2] = odom_T_after.x - odom_T_before.x
+    added = covariance_after - jacobian @ covariance_before @ jacobian.T
+    if not (np.isfinite(added).all() and added[2, 2] > 0.0):
+        return None
+    c, s = math.cos(odom_T_after.yaw), math.sin(odom_T_after.yaw)
+    base_R_odom = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    values, vectors = np.linalg.eigh(base_R_odom @ added @ base_R_odom.T)
+    noise: NDArray[np.float64] = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    return noise
+
+
+def add_noise(
+    particles: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    rng: np.random.Generator,
+) -> None:
+    """Move particles (N, 3) in place by noise of a covariance (3, 3), base frame."""
+    dx, dy, turn = rng.multivariate_normal(
+        np.zeros(3), covariance, len(particles), check_valid="ignore"
+    ).T
+    c, s = np.cos(particles[:, 2]), np.sin(particles[:, 2])
+    particles[:, 0] += c * dx - s * dy
+    particles[:, 1] += s * dx + c * dy
+    particles[:, 2] = _wrapped(particles[:, 2] + turn)
+
+
 def _normal(
     variance: float, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:

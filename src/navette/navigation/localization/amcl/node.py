@@ -4,6 +4,8 @@ Without a map the status is ``no_map``. Without an initial pose the robot is
 ``localizing``: map → odom is published once the pose is found, for which the robot has
 to move in places that look alike. A robot whose scans stop matching the map is
 ``lost``: the last correction stays, navigation stops, and the whole map is searched.
+Scans with too few echoes are not used: the pose follows the odometry, and the
+robot is ``lost`` once it is too uncertain.
 """
 
 from collections.abc import Callable
@@ -27,7 +29,10 @@ from navette.msgs.std_msgs.msg import Header
 from navette.msgs.std_srvs.srv import Empty
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.grids import LEVEL, grid_from_message, is_floor, upward_of
-from navette.navigation.localization.amcl.confidence import LocalizationState
+from navette.navigation.localization.amcl.confidence import (
+    DoubtCause,
+    LocalizationState,
+)
 from navette.navigation.localization.amcl.estimate import Particles
 from navette.navigation.localization.amcl.localizer import (
     Located,
@@ -55,8 +60,19 @@ from navette.runtime.time import ns_to_stamp
 
 T = TypeVar("T")
 
+_HELP = f"publish the pose on {topics.INITIAL_POSE.name} to help"
+#: What happens next, by the reason why the robot is not localized any more.
+_NEXT = {
+    DoubtCause.CONTRADICTED: f"the whole map is searched; {_HELP}",
+    DoubtCause.UNCERTAIN: "drive the robot by hand to where the scanner sees things of "
+    f"the map, or {_HELP}",
+    DoubtCause.ELSEWHERE: f"it continues once one place is confirmed; {_HELP}",
+}
+
 _START = ("x", "y", "z", "yaw")
 _MAP_TIMEOUT_NS = 2_000_000_000
+# Time after which a pose that is still unknown is reported.
+_FINDING_NS = 3_000_000_000
 _LATEST_NS = (2**31 - 1) * 1_000_000_000  # of a message
 _PLACE = ParameterDescriptor(
     description="where the robot starts, if set_initial_pose [m, rad]",
@@ -114,9 +130,11 @@ class AmclNode(StageNode):
         self._given: tuple[Pose2, NDArray[np.float64]] | None = None
         self._map: OccupancyGrid | None = None
         self._waits_since_ns: int | None = None
+        self._finding_since_ns: int | None = None
         self._state = LocalizationState.NO_MAP
         self._tracker, self._jumps = self._new_tracker(), OdometryJumps()
         self._attitude = AttitudeTracker()
+        self._odom_covariance: Any = np.zeros(36)
         self._status = StatusReporter(self, topics.LOCALIZATION_STATUS.name)
         self._status.report(LocalizationState.NO_MAP, StatusReporter.ERROR)
         self.create_service(
@@ -148,6 +166,7 @@ class AmclNode(StageNode):
         if not self._tracker.update(msg):
             return
         self._attitude.update(msg)
+        self._odom_covariance = msg.pose.covariance
         pose, stamp_ns = self._tracker.latest, self._tracker.stamp_ns
         assert pose is not None, "the tracker accepted the odometry"
         assert stamp_ns is not None, "with its stamp"
@@ -181,7 +200,8 @@ class AmclNode(StageNode):
         upward = upward_of(self._attitude.at(stamp_ns))
         if upward != LEVEL:
             points = points[~is_floor(points, self._height_of(msg), upward)]
-        view = ScanView(points, odom_T_base, stamp_ns)
+        covariance = planar_covariance(self._odom_covariance)
+        view = ScanView(points, odom_T_base, stamp_ns, len(msg.ranges), covariance)
         self._use(partial(_located, view=view), partial(self._publish, view=view))
 
     def _height_of(self, msg: LaserScan) -> float:
@@ -314,17 +334,25 @@ class AmclNode(StageNode):
         params, located = self.params, found.located
         odom_T_base, stamp_ns = view.odom_T_base, view.stamp_ns
         self._publish_transform(located.map_T_odom, stamp_ns)
+        self._report_search(located, stamp_ns)
         estimate = located.estimate
         if estimate is None:
             self._report(located.state)
             return
+        details: dict[str, Any] = {}
+        if located.match is not None:
+            details["match"] = located.match
+        if located.cause is not None:
+            details["reason"] = located.cause
         self._report(
             located.state,
-            match=located.match,
+            located.cause,
+            echoes="enough" if view.is_informative else "too few",
             stddev_m=estimate.stddev_m,
             share=estimate.share,
             particles=len(found.particles),
             hypotheses=located.hypotheses,
+            **details,
         )
         if not located.is_updated:
             return
@@ -353,16 +381,33 @@ class AmclNode(StageNode):
         )
         self.publish(topics.TF.name, TFMessage(transforms=[transform]))
 
-    def _report(self, state: LocalizationState, **details: Any) -> None:
+    def _report_search(self, located: Located, stamp_ns: int) -> None:
+        """Report once that an unknown pose is not found from where the robot is."""
+        if located.map_T_odom is not None:
+            self._finding_since_ns = None
+            return
+        since_ns = self._finding_since_ns
+        if since_ns is None or stamp_ns < since_ns:
+            self._finding_since_ns = since_ns = stamp_ns
+        if stamp_ns - since_ns >= _FINDING_NS:
+            self.get_logger().warning(
+                "localizing: the pose on the map is unknown, and no single place "
+                "explains the scans; navigation waits. Drive the robot by hand, until "
+                f"the scans fit one place only, or {_HELP}",
+                once=True,
+            )
+
+    def _report(
+        self,
+        state: LocalizationState,
+        cause: DoubtCause | None = None,
+        **details: Any,
+    ) -> None:
         if state is not self._state:
             self._state = state
             log = self.get_logger()
-            if state is LocalizationState.LOST:
-                log.warning(
-                    "lost: the scans do not match the map at the estimated pose; "
-                    "navigation stops. The whole map is searched; publish the pose on "
-                    f"{topics.INITIAL_POSE.name} to help"
-                )
-            else:
+            if cause is None or state is LocalizationState.LOCALIZED:
                 log.info(f"localization: {state}")
+            else:
+                log.warning(f"{state}: {cause}; navigation stops: {_NEXT[cause]}")
         self._status.report(state, _LEVELS.get(state, StatusReporter.ERROR), **details)

@@ -2,10 +2,12 @@
 
 Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), table 8.3, with KLD sampling.
 Where the algorithm adds random poses, here candidates of a search of the whole map are
-added: poses from which the present scan fits.
+added: poses from which the present scan fits. While the robot is localized none are
+added: where furniture was moved, wrong places fit a scan better than the right one.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,7 @@ from navette.navigation.localization.amcl.estimate import (
     ParticleEstimate,
     Particles,
 )
+from navette.navigation.localization.amcl.evidence import GOOD_FIT, rivals
 from navette.navigation.localization.amcl.global_search import (
     Candidates,
     search_map,
@@ -25,10 +28,13 @@ from navette.navigation.localization.amcl.likelihood_field import (
     Points,
 )
 from navette.navigation.localization.amcl.motion_model import (
+    Alphas,
+    add_noise,
     move_differential,
     move_omni,
 )
 from navette.navigation.localization.amcl.params import AmclParams
+from navette.navigation.localization.amcl.recent_scans import Seen
 from navette.navigation.localization.amcl.resampling import (
     kld_limit,
     occupied_bins,
@@ -40,16 +46,16 @@ _SEED_STDDEV = (0.08, 0.08, math.radians(3.0))
 # Candidates are drawn by this power of their likelihood: candidates that fit a little
 # less well survive until the robot has moved.
 _SEED_BEAMS = 6.0
+# Alphas of a motion without noise.
+_EXACT: Alphas = (0.0, 0.0, 0.0, 0.0, 0.0)
 # Updates between two searches of the whole map.
 _SEARCH_EVERY = 5
 # Largest share of particles that recovery replaces in an update.
 _MOST_REPLACED = 0.5
-# Below this ratio of the short-term to the long-term mean recovery begins …
+# Below this ratio of the short-term to the long-term mean recovery begins, unless a
+# particle fits well: the mean also falls where walls are far, and no search finds a
+# better pose.
 _RECOVERY_RATIO = 0.8
-# … unless a particle fits at least so well: the mean also falls where walls are far,
-# and no search finds a better pose. Mean log likelihood of a beam: that of a right pose
-# is about -0.03, with a third of the beams at unknown things -0.7.
-GOOD_FIT = -0.1
 
 
 class ParticleFilter:
@@ -108,12 +114,37 @@ class ParticleFilter:
         self._move(poses, motion, self._alphas, self._rng)
         self.particles = Particles(poses, self.particles.weights)
 
-    def update(self, points: Points, *, may_skip: bool = False) -> None:
+    def drift(self, motion: Pose2, noise: NDArray[np.float64] | None) -> None:
+        """Move without a scan that corrects: the number follows the growing spread.
+
+        Args:
+            motion: base before to base after, of the odometry.
+            noise: covariance (3, 3) of the motion, base frame; None: by the alphas.
+                These are larger, so that particles between two scans are diverse.
+        """
+        if noise is None:
+            self.predict(motion)
+        else:
+            moved = self.particles.poses.copy()
+            self._move(moved, motion, _EXACT, self._rng)
+            add_noise(moved, noise, self._rng)
+            self.particles = Particles(moved, self.particles.weights)
+        poses, weights = self.particles.poses, self.particles.weights
+        count = self._count_for(poses)
+        if count > len(poses):
+            self.particles = Particles.of(resampled(poses, weights, count, self._rng))
+
+    def keep_cluster(self) -> None:
+        """Drop the particles outside the heaviest cluster."""
+        self.particles = self.particles.near(self.estimate().pose)
+
+    def update(self, points: Points, *, is_localized: bool = False) -> None:
         """Weight by a scan's points (M, 2), base frame; resample when due.
 
-        ``may_skip``: whether beams that most particles contradict may be skipped.
+        ``is_localized``: beams that most particles contradict may be skipped, and no
+        candidates of other places are added.
         """
-        if self.params.do_beamskip and may_skip:
+        if self.params.do_beamskip and is_localized:
             points = self._agreed(points)
         if not len(points):
             return
@@ -128,7 +159,9 @@ class ParticleFilter:
         self.particles = Particles(poses, weights / weights.sum())
         self._updates += 1
         if self._updates % self.params.resample_interval == 0:
-            self._resample(points)
+            self._resample()
+            if not is_localized:
+                self._recover_if_worse(points)
 
     def estimate(self) -> ParticleEstimate:
         """Return the heaviest cluster."""
@@ -139,13 +172,21 @@ class ParticleFilter:
         within_m = max(2.0 * self.params.sigma_hit, 1.5 * self._field.spec.resolution)
         return self._field.share_within(np.array(pose), points, within_m)
 
-    def fit(self, pose: Pose2, points: Points) -> float:
-        """Return the mean log likelihood of points (M, 2), base, seen from a pose."""
-        return float(self._field.refined(np.array([pose]), points, 0.1, 0.05)[1][0])
+    def candidates(self, points: Points) -> Candidates:
+        """Return the poses of the map from which points (M, 2), base, fit."""
+        return search_map(self._field, points)
 
-    def recover(self, points: Points, share: float) -> None:
+    def refined(self, pose: Pose2, points: Points) -> tuple[Pose2, float]:
+        """Return a pose moved uphill, and the mean log likelihood of points there."""
+        poses, scores = self._field.refined(np.array([pose]), points, 0.1, 0.05)
+        return Pose2(*poses[0].tolist()), float(scores[0])
+
+    def rivals(self, pose: Pose2, scans: Sequence[Seen]) -> Candidates:
+        """Return places with notable evidence along the path against a pose."""
+        return rivals(self._field, scans, pose)
+
+    def recover(self, found: Candidates, share: float) -> None:
         """Replace a share of the particles by candidates of a search of the map."""
-        found = search_map(self._field, points)
         count = round(share * len(self.particles))
         if not count or not len(found.poses):
             return
@@ -191,21 +232,30 @@ class ParticleFilter:
         self._slow += slow * (mean - self._slow)
         self._fast += params.recovery_alpha_fast * (mean - self._fast)
 
-    def _resample(self, points: Points) -> None:
-        params = self.params
+    def _resample(self) -> None:
         poses, weights = self.particles.poses, self.particles.weights
-        drawn = resampled(poses, weights, params.max_particles, self._rng)
-        needed = kld_limit(occupied_bins(drawn), params.pf_err, params.pf_z)
-        count = min(max(needed, params.min_particles), params.max_particles)
+        drawn = resampled(poses, weights, self.params.max_particles, self._rng)
+        count = self._count_for(drawn)
         if count < len(drawn):
             drawn = resampled(poses, weights, count, self._rng)
         self.particles = Particles.of(drawn)
+
+    def _count_for(self, poses: NDArray[np.float64]) -> int:
+        """Return the number of particles for the spread of poses (N, 3)."""
+        params = self.params
+        needed = kld_limit(occupied_bins(poses), params.pf_err, params.pf_z)
+        return min(max(needed, params.min_particles), params.max_particles)
+
+    def _recover_if_worse(self, points: Points) -> None:
+        """Add candidates of the whole map if the weights fall."""
+        params = self.params
         ratio = self._fast / self._slow if self._slow else 1.0
         due = self._updates - self._searched >= _SEARCH_EVERY
         is_worse = ratio < _RECOVERY_RATIO and self._best < GOOD_FIT
         if params.recovery_alpha_slow and is_worse and due:
             self._searched = self._updates
-            self.recover(points, min(_MOST_REPLACED, 1.0 - ratio))
+            share = min(_MOST_REPLACED, 1.0 - ratio)
+            self.recover(self.candidates(points), share)
 
     def _around(self, found: Candidates, count: int) -> NDArray[np.float64]:
         """Return ``count`` particles around candidates, drawn by their likelihood."""
