@@ -170,7 +170,7 @@ def copy(
         _copy_extras(reader, writer, on_damage)
         for message in _chosen(reader, writer, selected, on_message, on_damage):
             writer.write(message)
-        if selected != MessageFilter():
+        if selected != MessageFilter() and reader.end_ns > 0:
             _refuse_nothing(writer)
     except BaseException:
         writer.abandon()
@@ -180,6 +180,7 @@ def copy(
 
 
 def _refuse_nothing(writer: TopicWriter) -> None:
+    """Refuse a copy without messages of a recording that has some."""
     if writer.message_count == 0 and not writer.losses.lines:
         raise InvalidValueError(f"no message is selected; {writer.path} is not written")
 
