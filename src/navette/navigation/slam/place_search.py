@@ -1,6 +1,5 @@
 """Search for a robot whose place in a known map is unknown."""
 
-from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -63,6 +62,12 @@ class Scout(Protocol):
         """Use a scan."""
 
 
+class MakeScout(Protocol):
+    """Returns a SLAM without a map."""
+
+    def __call__(self) -> Scout: ...
+
+
 class PlaceSearch:
     """Search for a robot around a start pose, and in the whole map if that is wrong.
 
@@ -84,7 +89,7 @@ class PlaceSearch:
         start: Pose2 | None,
         status: MatchStatus,
         *,
-        make_scout: Callable[[], Scout],
+        make_scout: MakeScout,
     ) -> None:
         self.graph = graph
         self.params = params
