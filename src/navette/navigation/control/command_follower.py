@@ -162,6 +162,9 @@ class CommandFollower(BaseFollower):
             return self._emit(brake(last, self._params, dt), ControlState.OFF_PATH)
         wanted = self._speed_limits.applied_to(self._wanted(inputs, dt))
         stopping = self._stopping(inputs).applied_to(wanted)
+        if self._params.max_side_speed_mps > 0.0:
+            # Its heading is apart from its motion: it may still turn at the end.
+            stopping = stopping._replace(turn_rate=wanted.turn_rate)
         command = approach(last, stopping, self._params, dt)
         if stopping != wanted:
             self._limited_by = LimitedBy.PATH_END

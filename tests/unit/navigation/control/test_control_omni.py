@@ -102,3 +102,18 @@ def test_speeds_are_those_of_a_drive_forward(each: Any, start: dict[str, Any]) -
     assert len(ahead) > 1
     for heading in (math.pi / 2, -math.pi / 2):
         assert speeds(heading, each, **start) == pytest.approx(ahead, abs=1e-6)
+
+
+def test_the_heading_is_reached_after_the_position() -> None:
+    follower = make_follower(PARAMS)
+    length = np.linspace(0.0, 1.0, 21)
+    follower.set_path(np.column_stack([length, 0 * length, 0 * length + 1.5]))
+    follower.set_obstacles(np.empty((0, 2)), 0.0)
+    pose = Pose2(1.0, 0.002, 0.0)
+    for _ in range(100):
+        output = follower.step(FollowerInputs(pose, 0.0, 0.0), DT)
+        if output.state is ControlState.REACHED:
+            break
+        pose = Pose2(pose.x, pose.y, pose.yaw + DT * output.command.turn_rate)
+    assert output.state is ControlState.REACHED
+    assert pose.yaw == pytest.approx(1.5, abs=0.1)
