@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Pose2, angle_difference, wrap_angles
 from navette.navigation.slam.block_cholesky import BlockCholesky
 
 Matrix = NDArray[np.float64]
@@ -61,7 +61,7 @@ def optimise(
         step, new_cost, tried = system.step(poses, damping), math.inf, poses.copy()
         if step is not None:
             tried[1:] += step
-            tried[:, 2] = np.remainder(tried[:, 2] + np.pi, 2 * np.pi) - np.pi
+            tried[:, 2] = wrap_angles(tried[:, 2])
             new_cost = system.cost(tried)
         if new_cost > cost * (1 + 1e-12) + 1e-12:
             damping = max(1e-4, 10.0 * damping)
@@ -143,6 +143,5 @@ class _System:
         local = np.column_stack([c * dx + s * dy, c * dy - s * dx])
         error = np.empty((len(local), 3))
         error[:, :2] = local - self._z[:, :2]
-        turn = target[:, 2] - source[:, 2] - self._z[:, 2]
-        error[:, 2] = np.remainder(turn + np.pi, 2 * np.pi) - np.pi
+        error[:, 2] = wrap_angles(target[:, 2] - source[:, 2] - self._z[:, 2])
         return error, local

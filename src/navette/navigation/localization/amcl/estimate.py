@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2, largest_stddev
+from navette.geometry import Pose2, largest_stddev, wrap_angles
 from navette.navigation.localization.amcl.bins import in_heaviest_bin
 
 _BIN_M, _BIN_HEADINGS = 0.5, 18
@@ -93,7 +93,7 @@ def _is_near(
     particles: NDArray[np.float64], mean: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     away = np.hypot(particles[:, 0] - mean[0], particles[:, 1] - mean[1])
-    turn = np.abs(_wrapped(particles[:, 2] - mean[2]))
+    turn = np.abs(wrap_angles(particles[:, 2] - mean[2]))
     near: NDArray[np.bool_] = (away < _RADIUS_M) & (turn < _RADIUS_RAD)
     return near
 
@@ -104,7 +104,7 @@ def _moments(
     """Return mean, covariance and total weight."""
     mean, mass = _mean(particles, weights), float(weights.sum())
     off = particles - mean
-    off[:, 2] = _wrapped(off[:, 2])
+    off[:, 2] = wrap_angles(off[:, 2])
     covariance = (off * weights[:, None]).T @ off / mass
     return ParticleEstimate(Pose2(*mean.tolist()), covariance, mass)
 
@@ -118,8 +118,3 @@ def _mean(
         float((np.cos(particles[:, 2]) * weights).sum()),
     )
     return np.array([x, y, yaw])
-
-
-def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    wrapped: NDArray[np.float64] = (angles + math.pi) % (2 * math.pi) - math.pi
-    return wrapped

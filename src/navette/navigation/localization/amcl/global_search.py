@@ -13,13 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, wrap_angles
 from navette.navigation.localization.amcl.bins import bin_keys
 from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
     Points,
     Poses,
 )
+from navette.navigation.localization.amcl.recent_scans import thinned
 
 _HEADINGS = 48
 _SPACING_M = 0.25
@@ -51,7 +52,7 @@ def search_map(field: LikelihoodField, points: Points) -> Candidates:
     is_free = field.is_free()
     if not len(points) or not is_free.any():
         return Candidates(np.empty((0, 3)), np.empty(0))
-    few = _spread(points, _BEAMS)
+    few = thinned(points, _BEAMS)
     blurred = field.blurred(_BLUR_M, _RANDOM)
     poses = _coarse_poses(blurred, is_free, few)
     coarse = blurred.scores(poses, few)
@@ -82,16 +83,9 @@ def different(poses: Poses, most: int) -> NDArray[np.int64]:
 def is_same(poses: Poses, pose: Pose2) -> NDArray[np.bool_]:
     """Return which poses (N, 3) are of the same place and heading as another one."""
     near = np.hypot(poses[:, 0] - pose.x, poses[:, 1] - pose.y) < _APART_M
-    turn = np.abs((poses[:, 2] - pose.yaw + math.pi) % (2 * math.pi) - math.pi)
+    turn = np.abs(wrap_angles(poses[:, 2] - pose.yaw))
     same: NDArray[np.bool_] = near & (turn < _APART_RAD)
     return same
-
-
-def _spread(points: Points, count: int) -> Points:
-    """Return at most ``count`` of the points, in equal steps."""
-    if len(points) <= count:
-        return points
-    return points[np.linspace(0, len(points) - 1, count).round().astype(np.int64)]
 
 
 def _coarse_poses(

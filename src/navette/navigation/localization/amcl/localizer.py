@@ -31,11 +31,10 @@ from navette.navigation.localization.amcl.likelihood_field import (
     LikelihoodField,
     Points,
 )
-from navette.navigation.localization.amcl.messages import thinned
 from navette.navigation.localization.amcl.motion_model import noise_of_motion
 from navette.navigation.localization.amcl.params import AmclParams
 from navette.navigation.localization.amcl.particle_filter import ParticleFilter
-from navette.navigation.localization.amcl.recent_scans import RecentScans
+from navette.navigation.localization.amcl.recent_scans import RecentScans, thinned
 
 # Period of an update of a robot at rest: it may have been carried.
 _REST_UPDATE_NS = 1_000_000_000

@@ -39,13 +39,6 @@ def scan_points(
     return base_T_sensor.apply(points)
 
 
-def thinned(points: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """Return at most ``count`` of the points, in equal steps of the scan."""
-    if len(points) <= count:
-        return points
-    return points[np.linspace(0, len(points) - 1, count).round().astype(np.int64)]
-
-
 def planar_covariance(covariance: object) -> NDArray[np.float64]:
     """Return the covariance (3, 3) of x, y, yaw of that (36,) of a pose."""
     return np.asarray(covariance, np.float64).reshape(6, 6)[_PLANAR].copy()

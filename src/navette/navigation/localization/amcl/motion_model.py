@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2, angle_difference
+from navette.geometry import Pose2, angle_difference, wrap_angles
 
 # Shorter translations have no direction.
 _LEAST_M = 0.01
@@ -47,7 +47,7 @@ def move_differential(
     heading = particles[:, 2] + turn_1
     particles[:, 0] += along * np.cos(heading)
     particles[:, 1] += along * np.sin(heading)
-    particles[:, 2] = _wrapped(heading + turn_2)
+    particles[:, 2] = wrap_angles(heading + turn_2)
 
 
 def move_omni(
@@ -73,7 +73,7 @@ def move_omni(
     heading = particles[:, 2] + math.atan2(motion.y, motion.x)
     particles[:, 0] += along * np.cos(heading) - side * np.sin(heading)
     particles[:, 1] += along * np.sin(heading) + side * np.cos(heading)
-    particles[:, 2] = _wrapped(particles[:, 2] + turned)
+    particles[:, 2] = wrap_angles(particles[:, 2] + turned)
 
 
 def noise_of_motion(
@@ -120,15 +120,10 @@ def add_noise(
     c, s = np.cos(particles[:, 2]), np.sin(particles[:, 2])
     particles[:, 0] += c * dx - s * dy
     particles[:, 1] += s * dx + c * dy
-    particles[:, 2] = _wrapped(particles[:, 2] + turn)
+    particles[:, 2] = wrap_angles(particles[:, 2] + turn)
 
 
 def _normal(
     variance: float, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     return rng.normal(0.0, math.sqrt(variance), count)
-
-
-def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    wrapped: NDArray[np.float64] = (angles + math.pi) % (2 * math.pi) - math.pi
-    return wrapped

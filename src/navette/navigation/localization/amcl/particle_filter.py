@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, wrap_angles
 from navette.navigation.localization.amcl.estimate import (
     ParticleEstimate,
     Particles,
@@ -95,7 +95,7 @@ class ParticleFilter:
         drawn = self._rng.multivariate_normal(
             mean, covariance, count, check_valid="ignore"
         )
-        drawn[:, 2] = (drawn[:, 2] + math.pi) % (2 * math.pi) - math.pi
+        drawn[:, 2] = wrap_angles(drawn[:, 2])
         self.particles = Particles.of(drawn)
         self._forget_means()
 

@@ -82,3 +82,10 @@ class RecentScans:
         apart_m, apart_rad = self._apart
         turned = abs(angle_difference(one.yaw, other.yaw))
         return one.distance_to(other) >= apart_m or turned >= apart_rad
+
+
+def thinned(points: Points, count: int) -> Points:
+    """Return at most ``count`` of the points, in equal steps of the scan."""
+    if len(points) <= count:
+        return points
+    return points[np.linspace(0, len(points) - 1, count).round().astype(np.int64)]
